@@ -1,0 +1,42 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace talkgraph {
+
+/// Thrown out of a node by Context::check_cancelled.
+struct Cancelled : std::runtime_error {
+  Cancelled() : std::runtime_error("cancelled") {}
+};
+
+/// What a running node may know of its surroundings; a node asks for it as a
+/// further argument `Context&` of its call operator. A default-constructed one
+/// serves in tests: it logs nothing and writes below the working directory.
+class Context {
+ public:
+  std::string item;                          ///< key of the item, empty for a node that runs once
+  std::filesystem::path folder = ".";        ///< the run folder: files that a node writes go below it
+  std::function<void(double)> on_progress;   ///< share done, 0..1
+  std::function<void(std::string_view)> on_log;
+  const std::atomic<bool>* cancel = nullptr;
+
+  void progress(double share) const {
+    if (on_progress) on_progress(share);
+  }
+  void log(std::string_view message) const {
+    if (on_log) on_log(message);
+  }
+  bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
+  /// Long loops call this now and then.
+  void check_cancelled() const {
+    if (cancelled()) throw Cancelled();
+  }
+};
+
+}  // namespace talkgraph

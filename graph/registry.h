@@ -1,0 +1,33 @@
+#pragma once
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "graph/description.h"
+
+namespace talkgraph {
+
+/// The node types that graphs may name. A family fills it through a function
+/// of its own, `void register_speech(Registry&)`; nothing registers by itself.
+class Registry {
+ public:
+  /// Adds a node type from its `describe`. Throws std::logic_error on a
+  /// duplicate name or an incomplete description.
+  template <class N>
+  void add() {
+    Description<N> description;
+    describe(description);
+    add(std::move(description).finish());
+  }
+  void add(NodeType type);
+
+  const NodeType* find(const std::string& name) const;
+  std::vector<std::string> names() const;
+
+ private:
+  std::map<std::string, NodeType> types_;
+};
+
+}  // namespace talkgraph

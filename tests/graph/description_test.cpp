@@ -1,0 +1,152 @@
+#include "graph/description.h"
+
+#include <gtest/gtest.h>
+
+#include "graph/registry.h"
+
+namespace talkgraph {
+
+struct Number {
+  double x = 0;
+};
+void fields(Archive& ar, Number& n) { ar("x", n.x); }
+template <>
+inline constexpr PortType port_type<Number>{"Number", 1};
+
+namespace {
+
+enum class Sign { plus, minus };
+
+struct Scale {
+  double factor = 2;
+  Sign sign = Sign::plus;
+  Number operator()(const Number& in) const { return {(sign == Sign::plus ? 1 : -1) * factor * in.x}; }
+};
+
+}  // namespace
+
+template <>
+inline constexpr EnumNames<Sign, 2> enum_names<Sign>{{{Sign::plus, "plus"}, {Sign::minus, "minus"}}};
+
+namespace {
+
+void describe(Description<Scale>& d) {
+  d.type("test.scale").summary("multiplies");
+  d.input("in").output("out");
+  d.param("factor", &Scale::factor).within(0, 10);
+  d.param("sign", &Scale::sign);
+}
+
+struct Both {
+  Number sum;
+  std::optional<Number> odd;
+};
+
+struct SumAll {
+  Both operator()(const Collected<Number>& all, const Number* bias, Random& random) const {
+    Both b;
+    if (bias) b.sum.x = bias->x;
+    for (std::size_t i = 0; i < all.size(); ++i) b.sum.x += all[i].x;
+    if (static_cast<int>(b.sum.x) % 2) b.odd = b.sum;
+    (void)random;
+    return b;
+  }
+};
+void describe(Description<SumAll>& d) {
+  d.type("test.sum").summary("adds up");
+  d.input("all").input("bias");
+  d.output("sum", &Both::sum).output("odd", &Both::odd);
+}
+
+struct Count {
+  int to = 3;
+  Stream<Number> operator()() const {
+    std::vector<Item<Number>> items;
+    for (int i = 0; i < to; ++i) items.push_back({std::to_string(i), {double(i)}});
+    return Stream<Number>(std::move(items));
+  }
+};
+void describe(Description<Count>& d) {
+  d.type("test.count").summary("counts");
+  d.output("n");
+  d.param("to", &Count::to).at_least(0);
+}
+
+LocatedJson json(const std::string& text, Diagnostics& diagnostics) {
+  return parse_json(std::make_shared<SourceText>(SourceText{"test.json", text}), diagnostics);
+}
+
+TEST(Description, CallsAFunctorWithItsParameters) {
+  Registry r;
+  r.add<Scale>();
+  const NodeType* type = r.find("test.scale");
+  ASSERT_TRUE(type);
+  EXPECT_EQ(type->inputs.at(0).type.name, "Number");
+  Diagnostics d;
+  const auto params = json(R"({"factor": 3, "sign": "minus"})", d);
+  const auto functor = type->make(&params, {}, "node \"s\"", d);
+  ASSERT_TRUE(d.ok()) << d.str();
+  Context context;
+  Random random;
+  const Input in{Value::of(Number{5}), {}};
+  EXPECT_EQ(functor->call({&in, 1}, context, random).at(0).get<Number>().x, -15);
+  EXPECT_EQ(functor->parameters().dump(), R"({"factor":3.0,"sign":"minus"})");
+}
+
+TEST(Description, ReportsEveryBadParameterWithItsPlace) {
+  Registry r;
+  r.add<Scale>();
+  Diagnostics d;
+  const auto params = json("{\"factor\": 11,\n \"sgn\": 1,\n \"sign\": \"plsu\"}", d);
+  r.find("test.scale")->make(&params, {}, "node \"s\"", d);
+  ASSERT_EQ(d.messages().size(), 3u) << d.str();
+  EXPECT_NE(d.str().find("test.json:1:12: error: node \"s\": parameter \"factor\" must be at most 10, got 11"),
+            std::string::npos)
+      << d.str();
+  EXPECT_NE(d.str().find("test.json:2:2"), std::string::npos);
+  EXPECT_NE(d.str().find("did you mean \"sign\"?"), std::string::npos);
+  EXPECT_NE(d.str().find("did you mean \"plus\"?"), std::string::npos);
+}
+
+TEST(Description, CollectsOptionalsAndSeveralOutputs) {
+  Registry r;
+  r.add<SumAll>();
+  const NodeType* type = r.find("test.sum");
+  EXPECT_EQ(type->inputs.at(0).kind, PortSpec::Kind::collected);
+  EXPECT_EQ(type->inputs.at(1).kind, PortSpec::Kind::optional);
+  EXPECT_TRUE(type->uses_random);
+  EXPECT_FALSE(type->outputs.at(0).may_drop);
+  EXPECT_TRUE(type->outputs.at(1).may_drop);
+  Diagnostics d;
+  const auto functor = type->make(nullptr, {}, "node", d);
+  std::vector<Input> in(2);
+  in[0].collected = {{"a", Value::of(Number{1})}, {"b", Value::of(Number{3})}};
+  Context context;
+  Random random;
+  const auto out = functor->call(in, context, random);
+  EXPECT_EQ(out.at(0).get<Number>().x, 4);
+  EXPECT_FALSE(out.at(1));
+}
+
+TEST(Description, StreamsItems) {
+  Registry r;
+  r.add<Count>();
+  EXPECT_TRUE(r.find("test.count")->makes_stream);
+  Diagnostics d;
+  const auto functor = r.find("test.count")->make(nullptr, {}, "node", d);
+  Context context;
+  Random random;
+  auto stream = functor->stream({}, context, random);
+  double sum = 0;
+  while (auto item = stream.next()) sum += item->value.at(0).get<Number>().x;
+  EXPECT_EQ(sum, 3);
+}
+
+TEST(Registry, RefusesDuplicates) {
+  Registry r;
+  r.add<Scale>();
+  EXPECT_THROW(r.add<Scale>(), std::logic_error);
+}
+
+}  // namespace
+}  // namespace talkgraph
