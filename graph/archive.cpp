@@ -102,8 +102,8 @@ class Hdf5Writer final : public Hdf5Archive {
   }
   void enter(std::string_view name) override {
     const std::string what = place(name) + ": cannot be written";
-    push(name, Handle(H5Gcreate2(group(), std::string(name).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
-                      what));
+    push(name,
+         Handle(H5Gcreate2(group(), std::string(name).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, what));
   }
 
  private:

@@ -21,7 +21,9 @@ class Archive;
 /// by argument-dependent lookup, which names each member once. The same
 /// function saves, loads and hashes.
 template <class T>
-concept HasFields = requires(Archive& ar, T& value) { fields(ar, value); };
+concept HasFields = requires(Archive& ar, T& value) {
+  fields(ar, value);
+};
 
 /// Visits the named members of a value: a writer, a reader or a hasher.
 /// Errors (a missing or misshapen member, a full disk) throw std::runtime_error

@@ -20,9 +20,9 @@ struct Cancelled : std::runtime_error {
 /// serves in tests: it logs nothing and writes below the working directory.
 class Context {
  public:
-  std::string item;                          ///< key of the item, empty for a node that runs once
-  std::filesystem::path folder = ".";        ///< the run folder: files that a node writes go below it
-  std::function<void(double)> on_progress;   ///< share done, 0..1
+  std::string item;                         ///< key of the item, empty for a node that runs once
+  std::filesystem::path folder = ".";       ///< the run folder: files that a node writes go below it
+  std::function<void(double)> on_progress;  ///< share done, 0..1
   std::function<void(std::string_view)> on_log;
   const std::atomic<bool>* cancel = nullptr;
 

@@ -48,8 +48,9 @@ struct unwrap_optional<std::optional<T>> {
 /// One argument of a call operator: what it takes from the inputs.
 template <class A>
 struct Argument {
-  static_assert(std::is_lvalue_reference_v<A> && std::is_const_v<std::remove_reference_t<A>>,
-                "a node takes its inputs as const A&, const Collected<A>&, const A*, and may take Random& and Context&");
+  static_assert(
+      std::is_lvalue_reference_v<A> && std::is_const_v<std::remove_reference_t<A>>,
+      "a node takes its inputs as const A&, const Collected<A>&, const A*, and may take Random& and Context&");
   using T = std::remove_cvref_t<A>;
   static constexpr bool is_port = true;
   static PortSpec spec() {
@@ -68,7 +69,8 @@ struct Argument {
   static auto take(const Input& in) {
     if constexpr (is_collected<T>::value) {
       T all;
-      for (const auto& item : in.collected) all.add(item.key, item.value.template share<typename is_collected<T>::Element>());
+      for (const auto& item : in.collected)
+        all.add(item.key, item.value.template share<typename is_collected<T>::Element>());
       return all;
     } else {
       return in.value.template share<T>();
@@ -93,9 +95,7 @@ struct Argument<const T*> {
     p.kind = PortSpec::Kind::optional;
     return p;
   }
-  static std::shared_ptr<const T> take(const Input& in) {
-    return in.value ? in.value.share<T>() : nullptr;
-  }
+  static std::shared_ptr<const T> take(const Input& in) { return in.value ? in.value.share<T>() : nullptr; }
   static const T* give(const std::shared_ptr<const T>& held) { return held.get(); }
 };
 
@@ -133,9 +133,10 @@ decltype(auto) invoke(const N& node, std::tuple<A...>*, std::span<const Input> i
     else
       return Argument<X>::give(h);
   };
-  return [&]<std::size_t... I>(std::index_sequence<I...>) -> decltype(auto) {
+  return [&]<std::size_t... I>(std::index_sequence<I...>)->decltype(auto) {
     return node(give(std::type_identity<A>{}, std::get<I>(held))...);
-  }(std::index_sequence_for<A...>{});
+  }
+  (std::index_sequence_for<A...>{});
 }
 
 template <class T>
@@ -197,8 +198,7 @@ class Description {
     spec.name = std::move(name);
     spec.doc = std::move(doc);
     spec.type = port_type<T>;
-    spec.may_drop =
-        !std::is_same_v<T, M> || !std::is_same_v<typename detail::is_stream<Result>::Element, Produced>;
+    spec.may_drop = !std::is_same_v<T, M> || !std::is_same_v<typename detail::is_stream<Result>::Element, Produced>;
     type_.outputs.push_back(std::move(spec));
     getters_.push_back([member](Produced& all) { return detail::to_value(std::move(all.*member)); });
     return *this;
@@ -252,8 +252,8 @@ class Description {
     }
     AnyStream stream(std::span<const Input> inputs, Context& context, Random& random) const override {
       if constexpr (makes_stream) {
-        auto result = std::make_shared<Result>(
-            detail::invoke(node_, static_cast<Arguments*>(nullptr), inputs, context, random));
+        auto result =
+            std::make_shared<Result>(detail::invoke(node_, static_cast<Arguments*>(nullptr), inputs, context, random));
         const auto size = result->size();
         // The inputs outlive the stream: what it produces may refer to them.
         auto held = std::make_shared<std::vector<Input>>(inputs.begin(), inputs.end());

@@ -49,12 +49,13 @@ struct Graph {
     Port source;
   };
 
-  std::string name;         ///< file it came from
+  std::string name;  ///< file it came from
   std::string description;
   std::vector<Node> nodes;  ///< in topological order
   std::vector<Output> outputs;
   std::uint64_t seed = 1;
-  Json resolved;            ///< the whole graph, self-contained, as it can be run again
+  Json resolved;  ///< the whole graph, self-contained, as it can be run again
+  std::vector<std::shared_ptr<const NodeType>> input_types;  ///< of a fragment's own inputs, which cannot run
 };
 
 /// How a graph is loaded.
@@ -64,8 +65,8 @@ struct LoadOptions {
 
 /// Reads, resolves and checks a graph file. All that is wrong goes to
 /// `diagnostics`; nothing is returned then.
-std::optional<Graph> load_graph(const std::filesystem::path& file, const Registry& registry,
-                                Diagnostics& diagnostics, const LoadOptions& options = {});
+std::optional<Graph> load_graph(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics,
+                                const LoadOptions& options = {});
 
 /// The same from a text in memory; relative files are taken from the folder of
 /// `name`.

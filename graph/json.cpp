@@ -17,7 +17,8 @@ class TokenPlaces {
 
   Place next() {
     const std::string& text = source_->text;
-    while (at_ < text.size() && std::string_view(" \t\r\n,:\xEF\xBB\xBF").find(text[at_]) != std::string_view::npos) ++at_;
+    while (at_ < text.size() && std::string_view(" \t\r\n,:\xEF\xBB\xBF").find(text[at_]) != std::string_view::npos)
+      ++at_;
     const std::size_t start = at_;
     if (at_ < text.size()) {
       const char c = text[at_];
@@ -28,7 +29,8 @@ class TokenPlaces {
       } else if (std::string_view("{}[]").find(c) != std::string_view::npos) {
         ++at_;
       } else {
-        while (at_ < text.size() && std::string_view(" \t\r\n,:{}[]\"").find(text[at_]) == std::string_view::npos) ++at_;
+        while (at_ < text.size() && std::string_view(" \t\r\n,:{}[]\"").find(text[at_]) == std::string_view::npos)
+          ++at_;
       }
     }
     return at(start, at_ - start);
@@ -69,8 +71,7 @@ class Builder final : public nlohmann::json_sax<Json> {
   bool key(std::string& v) override {
     const Place place = places_.next();
     LocatedJson& object = *stack_.back();
-    if (object.find(v))
-      diagnostics_.error(place, fmt::format("\"{}\" stands twice in this object: remove one", v));
+    if (object.find(v)) diagnostics_.error(place, fmt::format("\"{}\" stands twice in this object: remove one", v));
     object.members.push_back({v, place, {}});
     return true;
   }
@@ -162,7 +163,8 @@ std::string Diagnostics::str() const {
     std::replace(line.begin(), line.end(), '\t', ' ');
     const std::size_t column = static_cast<std::size_t>(m.place.column) - 1;
     if (line.empty() || column > line.size()) continue;
-    const std::size_t marks = std::clamp<std::size_t>(m.place.length, 1, std::max<std::size_t>(1, line.size() - column));
+    const std::size_t marks =
+        std::clamp<std::size_t>(m.place.length, 1, std::max<std::size_t>(1, line.size() - column));
     out += fmt::format("{:>5} | {}\n      | {}^{}\n", m.place.line, line, std::string(column, ' '),
                        std::string(marks - 1, '~'));
   }

@@ -16,7 +16,7 @@ namespace talkgraph {
 
 /// What arrives at an input port.
 struct Input {
-  Value value;  ///< of an item port; empty where an optional input has nothing
+  Value value;                         ///< of an item port; empty where an optional input has nothing
   std::vector<Item<Value>> collected;  ///< of a collecting port
 };
 
@@ -46,10 +46,10 @@ struct PortSpec {
 
 /// All that is known of a node type: made from its description.
 struct NodeType {
-  std::string name;     ///< "speech.mfcc"
-  int version = 1;      ///< raised by its author when its results change
+  std::string name;  ///< "speech.mfcc"
+  int version = 1;   ///< raised by its author when its results change
   std::string summary;
-  std::string source;   ///< section or equation of the thesis, or a citation
+  std::string source;  ///< section or equation of the thesis, or a citation
   std::vector<PortSpec> inputs;
   std::vector<PortSpec> outputs;
   std::vector<ParameterSpec> parameters;

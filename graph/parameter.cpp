@@ -45,8 +45,7 @@ bool read_number(const LocatedJson& json, double& value, const Range& range, con
 bool read_integer(const LocatedJson& json, std::int64_t& value, const Range& range, double type_low, double type_high,
                   const std::string& subject, Diagnostics& diagnostics) {
   const double number = json.is(LocatedJson::Kind::number) ? json.scalar.get<double>() : NAN;
-  if (!(number == std::floor(number)))
-    return complain_type(json, "a whole number", subject, diagnostics), false;
+  if (!(number == std::floor(number))) return complain_type(json, "a whole number", subject, diagnostics), false;
   if (!check_range(number, range, json, subject, diagnostics)) return false;
   if (!check_range(number, {std::max(type_low, -9e18), std::min(type_high, 9e18), false}, json, subject, diagnostics))
     return false;
@@ -66,7 +65,7 @@ void read_path(const LocatedJson& json, FilePath& value, const std::string& subj
   const std::filesystem::path given(value.path);
   if (given.empty() || given.is_absolute() || !json.place.source) return;
   const auto folder = std::filesystem::path(json.place.source->name).parent_path();
-  value.path = (folder / given).lexically_normal().string();
+  value.path = std::filesystem::absolute(folder / given).lexically_normal().string();
 }
 
 void read_rational(const LocatedJson& json, Rational& value, const Range& range, const std::string& subject,
@@ -97,7 +96,8 @@ void read_struct(const LocatedJson& json, void* target, const std::vector<Parame
     for (const auto& spec : specs)
       if (spec.name == member.key) {
         known = true;
-        spec.read(target, member.value, spec.range, fmt::format("{}: parameter \"{}\"", subject, spec.name), diagnostics);
+        spec.read(target, member.value, spec.range, fmt::format("{}: parameter \"{}\"", subject, spec.name),
+                  diagnostics);
       }
     if (!known)
       diagnostics.error(member.key_place, fmt::format("{}: unknown parameter \"{}\"{}", subject, member.key,
@@ -105,7 +105,8 @@ void read_struct(const LocatedJson& json, void* target, const std::vector<Parame
   }
   for (const auto& spec : specs)
     if (spec.required && !json.find(spec.name))
-      diagnostics.error(json.place, fmt::format("{}: parameter \"{}\" must be given: {}", subject, spec.name, spec.doc));
+      diagnostics.error(json.place,
+                        fmt::format("{}: parameter \"{}\" must be given: {}", subject, spec.name, spec.doc));
 }
 
 Json write_struct(const void* target, const std::vector<ParameterSpec>& specs) {

@@ -52,13 +52,13 @@ struct Range {
 /// How one parameter of a node is read, checked, documented and written back.
 struct ParameterSpec {
   std::string name;
-  std::string type;      ///< "number", "integer", "text", "ratio", "list of number" ...
+  std::string type;  ///< "number", "integer", "text", "ratio", "list of number" ...
   std::string doc;
   std::string unit;
-  Json initial;          ///< default value
+  Json initial;  ///< default value
   bool required = false;
   Range range;
-  std::vector<std::string> choices;  ///< of an enum or a variant
+  std::vector<std::string> choices;    ///< of an enum or a variant
   std::vector<ParameterSpec> members;  ///< of a nested struct
   /// Reads into the node; complaints start with `subject` ("node \"mfcc\": parameter \"filters\"").
   std::function<void(void* node, const LocatedJson&, const Range&, const std::string& subject, Diagnostics&)> read;
@@ -246,7 +246,7 @@ class Parameters {
     specs_.push_back(std::move(spec));
     auto& stored = specs_.back();
     if constexpr (std::is_class_v<M>)
-      if constexpr (requires(Parameters<M>& p) { parameters(p); }) stored.members = detail::struct_parameters<M>();
+      if constexpr (requires(Parameters<M> & p) { parameters(p); }) stored.members = detail::struct_parameters<M>();
     stored.read = [member](void* target, const LocatedJson& json, const Range& range, const std::string& subject,
                            Diagnostics& diagnostics) {
       detail::read_parameter(json, static_cast<T*>(target)->*member, range, subject, diagnostics);

@@ -25,9 +25,12 @@ class Registry {
 
   const NodeType* find(const std::string& name) const;
   std::vector<std::string> names() const;
+  /// The types of all ports, each once.
+  const std::vector<PortType>& port_types() const { return port_types_; }
 
  private:
   std::map<std::string, NodeType> types_;
+  std::vector<PortType> port_types_;
 };
 
 }  // namespace talkgraph

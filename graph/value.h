@@ -32,8 +32,8 @@ concept Port = !port_type<T>.name.empty();
 /// What is known of a port type at run time.
 struct TypeInfo {
   PortType type;
-  void (*visit)(Archive&, void*);              ///< its fields()
-  std::shared_ptr<void> (*make)();             ///< a default-constructed one, to load into
+  void (*visit)(Archive&, void*);   ///< its fields()
+  std::shared_ptr<void> (*make)();  ///< a default-constructed one, to load into
 };
 
 template <Port T>

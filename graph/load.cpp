@@ -1,0 +1,437 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "graph/draft.h"
+
+namespace talkgraph {
+namespace detail {
+namespace {
+
+using Kind = LocatedJson::Kind;
+
+const std::vector<std::string> graph_keys = {"$schema", "description", "parameters", "inputs",
+                                             "nodes",   "outputs",     "seed"};
+const std::vector<std::string> node_keys = {"type", "graph", "in", "params", "description"};
+
+void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,
+                Diagnostics& diagnostics) {
+  for (const auto& m : json.members)
+    if (std::find(allowed.begin(), allowed.end(), m.key) == allowed.end())
+      diagnostics.error(m.key_place,
+                        fmt::format("{}: unknown key \"{}\"{}", subject, m.key, did_you_mean(m.key, allowed)));
+}
+
+bool expect_object(const LocatedJson& json, const std::string& subject, Diagnostics& diagnostics) {
+  if (json.is(Kind::object)) return true;
+  diagnostics.error(json.place, fmt::format("{} must be an object, got {}", subject, json.kind_name()));
+  return false;
+}
+
+std::vector<std::string> names_of(const std::map<std::string, LocatedJson>& parameters) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : parameters) names.push_back(name);
+  return names;
+}
+
+/// Puts parameter values in place of ${name} throughout a value. A text that is
+/// exactly ${name} becomes the parameter's value, type and place and all.
+class Substitution {
+ public:
+  Substitution(const std::map<std::string, LocatedJson>& parameters, Diagnostics& diagnostics)
+      : parameters_(parameters), diagnostics_(diagnostics) {}
+
+  LocatedJson operator()(const LocatedJson& json) const {
+    if (json.is(Kind::text)) return text(json);
+    LocatedJson out = json;
+    for (auto& item : out.items) item = (*this)(item);
+    for (auto& m : out.members) m.value = (*this)(m.value);
+    return out;
+  }
+
+ private:
+  LocatedJson text(const LocatedJson& json) const {
+    const auto given = json.scalar.get<std::string>();
+    LocatedJson out = json;
+    std::string result;
+    for (std::size_t at = 0; at < given.size();) {
+      if (given.compare(at, 3, "$${") == 0) {
+        result += "${";
+        at += 3;
+        continue;
+      }
+      const auto close = given.compare(at, 2, "${") == 0 ? given.find('}', at) : std::string::npos;
+      if (close == std::string::npos) {
+        result += given[at++];
+        continue;
+      }
+      const LocatedJson* value = find(given.substr(at + 2, close - at - 2), json.place);
+      if (!value) return json;
+      if (at == 0 && close + 1 == given.size()) return *value;
+      if (value->is(Kind::object) || value->is(Kind::array) || value->is(Kind::null)) {
+        diagnostics_.error(json.place, fmt::format("{} cannot stand inside a text", value->kind_name()));
+        return json;
+      }
+      // A path that begins with a parameter is relative to where that was written.
+      if (at == 0) out.place = value->place;
+      result += value->is(Kind::text) ? value->scalar.get<std::string>() : value->scalar.dump();
+      at = close + 1;
+    }
+    out.scalar = result;
+    return out;
+  }
+
+  const LocatedJson* find(const std::string& name, const Place& place) const {
+    const auto it = parameters_.find(name);
+    if (it != parameters_.end()) return &it->second;
+    diagnostics_.error(place,
+                       fmt::format("unknown parameter ${{{}}}{}", name, did_you_mean(name, names_of(parameters_))));
+    return nullptr;
+  }
+
+  const std::map<std::string, LocatedJson>& parameters_;
+  Diagnostics& diagnostics_;
+};
+
+std::shared_ptr<const SourceText> read_text_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in || std::filesystem::is_directory(file)) return nullptr;
+  return std::make_shared<SourceText>(
+      SourceText{file.string(), {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}});
+}
+
+std::string nearby_graphs(const std::filesystem::path& file) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(file.parent_path().empty() ? "." : file.parent_path(), ignored))
+    if (entry.path().extension() == ".json") names.push_back(entry.path().filename().string());
+  return did_you_mean(file.filename().string(), names);
+}
+
+/// Opens graphs: substitutes parameters, makes functors, descends into graphs used as nodes.
+class Loader {
+ public:
+  Loader(const Registry& registry, Diagnostics& diagnostics) : registry_(registry), diagnostics_(diagnostics) {}
+
+  Draft draft;
+
+  void open_root(LocatedJson json, const LocatedJson* given = nullptr) {
+    draft.root = std::make_unique<Scope>();
+    draft.root->json = std::move(json);
+    open(*draft.root, given, "graph");
+    if (const auto* seed = draft.root->json.find("seed")) {
+      std::int64_t value = 1;
+      const LocatedJson given = Substitution(draft.root->parameters, diagnostics_)(seed->value);
+      if (read_integer(given, value, Range{0, 9e15, false}, 0, 9e15, "seed", diagnostics_))
+        draft.seed = static_cast<std::uint64_t>(value);
+    }
+    add_graph_inputs();
+  }
+
+ private:
+  void open(Scope& scope, const LocatedJson* given, const std::string& subject) {
+    if (!expect_object(scope.json, subject, diagnostics_)) return;
+    check_keys(scope.json, graph_keys, subject, diagnostics_);
+    read_parameters(scope, given, subject);
+    const Substitution substitute(scope.parameters, diagnostics_);
+    const auto* nodes = scope.json.find("nodes");
+    if (!nodes) return diagnostics_.error(scope.json.place, subject + " has no \"nodes\"");
+    if (!expect_object(nodes->value, "\"nodes\"", diagnostics_)) return;
+    for (const auto& m : nodes->value.members) {
+      auto& entry = scope.entries[m.key];
+      entry.json = substitute(m.value);
+      open_node(scope, m, entry);
+    }
+  }
+
+  void read_parameters(Scope& scope, const LocatedJson* given, const std::string& subject) {
+    const auto* declared = scope.json.find("parameters");
+    if (declared && expect_object(declared->value, "\"parameters\"", diagnostics_))
+      for (const auto& m : declared->value.members) {
+        if (!expect_object(m.value, fmt::format("parameter \"{}\"", m.key), diagnostics_)) continue;
+        check_keys(m.value, {"default", "doc"}, fmt::format("parameter \"{}\"", m.key), diagnostics_);
+        const auto* own = given ? given->find(m.key) : nullptr;
+        if (own)
+          scope.parameters[m.key] = own->value;
+        else if (const auto* initial = m.value.find("default"))
+          scope.parameters[m.key] = initial->value;
+        else
+          diagnostics_.error(given ? given->place : m.key_place,
+                             fmt::format("{}: parameter \"{}\" must be given", subject, m.key));
+      }
+    if (!given) return;
+    for (const auto& m : given->members)
+      if (!declared || !declared->value.find(m.key))
+        diagnostics_.error(m.key_place, fmt::format("{}: unknown parameter \"{}\"{}", subject, m.key,
+                                                    did_you_mean(m.key, names_of(scope.parameters))));
+  }
+
+  void open_node(Scope& scope, const LocatedJson::Member& member, Scope::Entry& entry) {
+    const std::string subject = fmt::format("node \"{}\"", scope.prefix + member.key);
+    if (member.key.empty() || member.key.find_first_of(". ") != std::string::npos || member.key == "inputs")
+      diagnostics_.error(member.key_place, fmt::format("\"{}\" cannot be the name of a node", member.key));
+    if (!expect_object(entry.json, subject, diagnostics_)) return;
+    check_keys(entry.json, node_keys, subject, diagnostics_);
+    for (const char* part : {"in", "params"})
+      if (const auto* m = entry.json.find(part))
+        expect_object(m->value, fmt::format("{}: \"{}\"", subject, part), diagnostics_);
+    const auto* type = entry.json.find("type");
+    const auto* graph = entry.json.find("graph");
+    if (!type == !graph)
+      return diagnostics_.error(member.key_place, subject + " must have either a \"type\" or a \"graph\"");
+    if (type)
+      make_node(scope, member, entry, type->value, subject);
+    else
+      open_graph_node(scope, member, entry, graph->value, subject);
+  }
+
+  void make_node(Scope& scope, const LocatedJson::Member& member, Scope::Entry& entry, const LocatedJson& type,
+                 const std::string& subject) {
+    std::string name;
+    if (!read_text(type, name, "a node type", subject + ": \"type\"", diagnostics_)) return;
+    const NodeType* known = registry_.find(name);
+    if (!known)
+      return diagnostics_.error(type.place, fmt::format("{}: unknown node type \"{}\"{}", subject, name,
+                                                        did_you_mean(name, registry_.names())));
+    auto* params = entry.json.find("params");
+    if (params) embed_graphs(*known, params->value);
+    entry.node = static_cast<int>(draft.nodes.size());
+    draft.nodes.push_back({scope.prefix + member.key, known,
+                           known->make(params ? &params->value : nullptr, member.key_place, subject, diagnostics_),
+                           &scope, &entry.json, member.key_place});
+  }
+
+  /// A parameter that is a graph: a file name, or {"graph": file, "params": {...}}; the node gets it resolved.
+  void embed_graphs(const NodeType& type, LocatedJson& params) {
+    for (const auto& spec : type.parameters) {
+      auto* given = spec.type == "graph" ? params.find(spec.name) : nullptr;
+      if (!given) continue;
+      const auto* file = given->value.is(Kind::object) ? given->value.find("graph") : nullptr;
+      const auto* inner = given->value.is(Kind::object) ? given->value.find("params") : nullptr;
+      const LocatedJson& named = file ? file->value : given->value;
+      // A graph that is resolved already, as a saved model holds it.
+      if (named.is(Kind::text) &&
+          (named.scalar.get<std::string>().empty() || named.scalar.get<std::string>()[0] == '{'))
+        continue;
+      const auto text = read_graph(named);
+      if (!text) continue;
+      Loader loader(registry_, diagnostics_);
+      loader.open_stack_ = open_stack_;
+      LocatedJson json = parse_json(text, diagnostics_);
+      loader.open_root(std::move(json), inner ? &inner->value : nullptr);
+      if (const auto graph = connect(loader.draft, registry_, diagnostics_)) {
+        LocatedJson resolved;
+        resolved.kind = Kind::text;
+        resolved.scalar = graph->resolved.dump();
+        resolved.place = named.place;
+        given->value = std::move(resolved);
+      } else {
+        given->value = located("{}", named.place);
+      }
+    }
+  }
+
+  void open_graph_node(Scope& scope, const LocatedJson::Member& member, Scope::Entry& entry, const LocatedJson& file,
+                       const std::string& subject) {
+    const auto text = read_graph(file);
+    if (!text) return;
+    if (std::find(open_stack_.begin(), open_stack_.end(), text->name) != open_stack_.end())
+      return diagnostics_.error(file.place, fmt::format("{}: the graph {} contains itself", subject, text->name));
+    entry.graph = std::make_unique<Scope>();
+    Scope& inner = *entry.graph;
+    inner.prefix = scope.prefix + member.key + "/";
+    inner.parent = &scope;
+    inner.json = parse_json(text, diagnostics_);
+    const auto* in = entry.json.find("in");
+    inner.in = in ? &in->value : nullptr;
+    const auto* params = entry.json.find("params");
+    LocatedJson none;
+    none.kind = Kind::object;
+    none.place = member.key_place;
+    open_stack_.push_back(text->name);
+    open(inner, params ? &params->value : &none, subject);
+    open_stack_.pop_back();
+    const auto& declared = members_of(inner.json, "inputs");
+    for (const auto& d : declared) {
+      const auto type = declared_input(d.value, registry_, diagnostics_);
+      if (type && !type->optional && !(inner.in && inner.in->find(d.key)))
+        diagnostics_.error(member.key_place,
+                           fmt::format("{}: input \"{}\" ({}) is not wired", subject, d.key, type->type));
+    }
+    if (!inner.in) return;
+    std::vector<std::string> names;
+    for (const auto& d : declared) names.push_back(d.key);
+    for (const auto& m : inner.in->members)
+      if (std::find(names.begin(), names.end(), m.key) == names.end())
+        diagnostics_.error(m.key_place,
+                           fmt::format("{}: unknown input \"{}\"{}", subject, m.key, did_you_mean(m.key, names)));
+  }
+
+  std::shared_ptr<const SourceText> read_graph(const LocatedJson& file) {
+    FilePath path;
+    if (!file.is(Kind::text)) {
+      diagnostics_.error(file.place, fmt::format("a graph is named by its file, got {}", file.kind_name()));
+      return nullptr;
+    }
+    read_path(file, path, "graph", diagnostics_);
+    auto text = read_text_file(path.path);
+    if (!text)
+      diagnostics_.error(file.place,
+                         fmt::format("unknown graph: {} cannot be read{}", path.path, nearby_graphs(path.path)));
+    return text;
+  }
+
+  /// A fragment by itself: its inputs stand as sources that cannot run.
+  void add_graph_inputs();
+
+  const Registry& registry_;
+  Diagnostics& diagnostics_;
+  std::vector<std::string> open_stack_;
+};
+
+/// Stands for the inputs of a graph that is looked at, not run.
+class UnboundInputs final : public Functor {
+ public:
+  std::vector<Value> call(std::span<const Input>, Context&, Random&) const override { fail(); }
+  AnyStream stream(std::span<const Input>, Context&, Random&) const override { fail(); }
+  Json parameters() const override { return Json::object(); }
+
+ private:
+  [[noreturn]] static void fail() {
+    throw std::runtime_error("this graph has inputs: use it as a node of another graph, which wires them");
+  }
+};
+
+void Loader::add_graph_inputs() {
+  for (const bool streams : {false, true}) {
+    auto type = std::make_unique<NodeType>();
+    type->name = "inputs";
+    type->makes_stream = streams;
+    for (const auto& m : members_of(draft.root->json, "inputs")) {
+      const auto input = declared_input(m.value, registry_, diagnostics_);
+      if (!input || input->stream != streams) continue;
+      PortSpec port;
+      port.name = m.key;
+      port.type = {*std::find_if(registry_.port_types().begin(), registry_.port_types().end(),
+                                 [&](const PortType& t) { return t.name == input->type; })};
+      type->outputs.push_back(port);
+    }
+    if (type->outputs.empty()) continue;
+    draft.nodes.push_back({streams ? "inputs (streams)" : "inputs", type.get(), std::make_shared<UnboundInputs>(),
+                           nullptr, nullptr, draft.root->json.place});
+    draft.input_types.push_back(std::move(type));
+  }
+}
+
+/// Applies "path=value" to a graph's text before anything is read from it.
+void apply_set(LocatedJson& json, const std::string& set, Diagnostics& diagnostics) {
+  const auto equals = set.find('=');
+  auto source = std::make_shared<SourceText>(SourceText{"--set", set});
+  Place place{source, 1, 1, static_cast<int>(set.size())};
+  if (equals == std::string::npos || equals == 0)
+    return diagnostics.error(place, "--set takes path=value, such as nodes.mfcc.params.filters=20");
+  const std::string path = set.substr(0, equals), text = set.substr(equals + 1);
+  Json value = Json::parse(text, nullptr, false);
+  if (value.is_discarded()) value = text;
+
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= path.size();) {
+    const auto dot = std::min(path.find('.', at), path.size());
+    parts.push_back(path.substr(at, dot - at));
+    at = dot + 1;
+  }
+  // A parameter of the graph may be named alone.
+  const auto* parameters = json.find("parameters");
+  if (parts.size() == 1 && parts[0] != "seed" && parts[0] != "description") {
+    std::vector<std::string> known;
+    for (const auto& m : members_of(json, "parameters")) known.push_back(m.key);
+    if (!parameters || !parameters->value.find(parts[0]))
+      return diagnostics.error(
+          place, fmt::format("--set: the graph has no parameter \"{}\"{}", parts[0], did_you_mean(parts[0], known)));
+    parts = {"parameters", parts[0], "default"};
+  }
+  LocatedJson* at = &json;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!at->is(Kind::object))
+      return diagnostics.error(place, fmt::format("--set: nothing can be set below \"{}\"", parts[i - 1]));
+    auto* member = at->find(parts[i]);
+    const bool may_add = i + 1 == parts.size() || parts[i] == "params" || parts[i] == "in";
+    if (!member && !may_add) {
+      std::vector<std::string> known;
+      for (const auto& m : at->members) known.push_back(m.key);
+      return diagnostics.error(place,
+                               fmt::format("--set: there is no \"{}\"{}", parts[i], did_you_mean(parts[i], known)));
+    }
+    if (!member) {
+      LocatedJson empty;
+      empty.kind = Kind::object;
+      empty.place = place;
+      at->members.push_back({parts[i], place, empty});
+      member = &at->members.back();
+    }
+    at = &member->value;
+  }
+  *at = located(value, place);
+}
+
+}  // namespace
+
+const std::vector<LocatedJson::Member>& members_of(const LocatedJson& json, std::string_view key) {
+  static const std::vector<LocatedJson::Member> none;
+  const auto* m = json.find(key);
+  return m ? m->value.members : none;
+}
+
+std::optional<DeclaredInput> declared_input(const LocatedJson& json, const Registry& registry,
+                                            Diagnostics& diagnostics) {
+  DeclaredInput input;
+  const LocatedJson* type = &json;
+  if (json.is(Kind::object)) {
+    check_keys(json, {"type", "optional", "doc"}, "graph input", diagnostics);
+    if (const auto* m = json.find("optional"))
+      read_parameter(m->value, input.optional, {}, "\"optional\"", diagnostics);
+    const auto* m = json.find("type");
+    if (!m) return diagnostics.error(json.place, "a graph input needs a \"type\""), std::nullopt;
+    type = &m->value;
+  }
+  if (!read_text(*type, input.type, "a type name", "graph input", diagnostics)) return {};
+  if (input.type.starts_with("Stream<") && input.type.ends_with(">")) {
+    input.stream = true;
+    input.type = input.type.substr(7, input.type.size() - 8);
+  }
+  std::vector<std::string> known;
+  for (const auto& t : registry.port_types()) known.emplace_back(t.name);
+  if (std::find(known.begin(), known.end(), input.type) != known.end()) return input;
+  diagnostics.error(type->place, fmt::format("unknown type \"{}\"{}", input.type, did_you_mean(input.type, known)));
+  return {};
+}
+
+}  // namespace detail
+
+std::optional<Graph> load_graph_text(const std::string& name, const std::string& text, const Registry& registry,
+                                     Diagnostics& diagnostics, const LoadOptions& options) {
+  const auto source = std::make_shared<SourceText>(SourceText{name, text});
+  LocatedJson json = parse_json(source, diagnostics);
+  if (!diagnostics.ok() && !json.is(LocatedJson::Kind::object)) return {};
+  for (const auto& set : options.sets) detail::apply_set(json, set, diagnostics);
+  detail::Loader loader(registry, diagnostics);
+  loader.open_root(std::move(json));
+  auto graph = detail::connect(loader.draft, registry, diagnostics);
+  if (graph) graph->name = name;
+  return graph;
+}
+
+std::optional<Graph> load_graph(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics,
+                                const LoadOptions& options) {
+  const auto text = detail::read_text_file(file);
+  if (!text) {
+    diagnostics.error({}, fmt::format("{}: cannot be read{}", file.string(), detail::nearby_graphs(file)));
+    return {};
+  }
+  return load_graph_text(text->name, text->text, registry, diagnostics, options);
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,120 @@
+#include "graph/archive.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace talkgraph {
+
+struct Part {
+  double d = 0;
+  std::vector<double> list;
+};
+void fields(Archive& ar, Part& p) {
+  ar("d", p.d);
+  ar("list", p.list);
+}
+struct Whole {
+  std::int64_t i = 0;
+  bool yes = false;
+  std::string text;
+  std::vector<std::string> texts;
+  std::vector<std::uint8_t> bytes;
+  std::vector<std::int64_t> integers;
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd vector;
+  Rational rate{30000, 1001};
+  std::optional<Part> some, none;
+  std::vector<Part> parts;
+  std::map<std::string, Part> named;
+};
+void fields(Archive& ar, Whole& w) {
+  ar("i", w.i);
+  ar("yes", w.yes);
+  ar("text", w.text);
+  ar("texts", w.texts);
+  ar("bytes", w.bytes);
+  ar("integers", w.integers);
+  ar("matrix", w.matrix);
+  ar("vector", w.vector);
+  ar("rate", w.rate);
+  ar("some", w.some);
+  ar("none", w.none);
+  ar("parts", w.parts);
+  ar("named", w.named);
+}
+
+namespace {
+
+Whole example() {
+  Whole w;
+  w.i = -7;
+  w.yes = true;
+  w.text = "naïve \"text\"\n";
+  w.texts = {"", "a", "bc"};
+  w.bytes = {0, 255, 3};
+  w.integers = {1, -2};
+  w.matrix = Eigen::MatrixXd::Random(3, 5);
+  w.vector = Eigen::VectorXd::LinSpaced(4, 0, 1);
+  w.some = Part{1.5, {1, 2}};
+  w.parts = {Part{2, {}}, Part{3, {4}}};
+  w.named = {{"x/y", Part{5, {}}}};
+  return w;
+}
+
+std::string hash(Whole w) {
+  return content_hash([&](Archive& ar) { fields(ar, w); });
+}
+
+class ArchiveFile : public testing::Test {
+ protected:
+  std::string path = testing::TempDir() + "talkgraph_archive_test.h5";
+  void TearDown() override { std::filesystem::remove(path); }
+};
+
+TEST_F(ArchiveFile, RestoresEveryKindOfMember) {
+  Whole w = example();
+  (*hdf5_writer(path))("whole", w);
+  Whole back;
+  back.none = Part{};
+  (*hdf5_reader(path))("whole", back);
+  EXPECT_EQ(hash(back), hash(w));
+  EXPECT_EQ(back.matrix, w.matrix);
+  EXPECT_EQ(back.texts, w.texts);
+  EXPECT_EQ(back.rate, w.rate);
+  EXPECT_EQ(back.some->list, w.some->list);
+  EXPECT_EQ(back.named.at("x/y").d, 5);
+}
+
+TEST_F(ArchiveFile, SaysWhatIsWrong) {
+  EXPECT_THROW(hdf5_reader(path), std::runtime_error);
+  std::ofstream(path) << "not a model";
+  EXPECT_THROW(hdf5_reader(path), std::runtime_error);
+  Part p;
+  (*hdf5_writer(path))("part", p);
+  Whole w;
+  try {
+    (*hdf5_reader(path))("part", w);
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("/part/i"), std::string::npos) << e.what();
+  }
+  EXPECT_THROW(hdf5_writer("/nowhere/x.h5"), std::runtime_error);
+}
+
+TEST(Hash, TellsContentsApart) {
+  Whole a = example(), b = example();
+  EXPECT_EQ(hash(a), hash(b = a));
+  b.matrix(2, 4) += 1e-15;
+  EXPECT_NE(hash(a), hash(b));
+  b = a;
+  b.texts = {"", "ab", "c"};
+  EXPECT_NE(hash(a), hash(b));
+  b = a;
+  b.matrix = Eigen::Map<Eigen::MatrixXd>(a.matrix.data(), 5, 3);
+  EXPECT_NE(hash(a), hash(b));
+}
+
+}  // namespace
+}  // namespace talkgraph

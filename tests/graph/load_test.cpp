@@ -1,0 +1,217 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "graph/graph.h"
+#include "tests/graph/toy_nodes.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::HasSubstr;
+
+/// A folder of graph files that vanishes with the test.
+class Load : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = std::filesystem::path(testing::TempDir()) /
+             ("talkgraph_load_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  std::string write(const std::string& name, const std::string& text) {
+    std::filesystem::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name) << text;
+    return (folder / name).string();
+  }
+  std::optional<Graph> load(const std::string& text, std::vector<std::string> sets = {}) {
+    diagnostics = {};
+    return load_graph(write("g.json", text), registry, diagnostics, {std::move(sets)});
+  }
+  void expect_error(const std::string& text, const std::string& where, const std::string& what,
+                    std::vector<std::string> sets = {}) {
+    EXPECT_FALSE(load(text, std::move(sets)));
+    EXPECT_THAT(diagnostics.str(), HasSubstr(where + ": error: "));
+    EXPECT_THAT(diagnostics.str(), HasSubstr(what));
+  }
+
+  Registry registry = toy::registry();
+  Diagnostics diagnostics;
+  std::filesystem::path folder;
+};
+
+const char* const train_then_apply = R"({
+  "parameters": { "n": { "default": 4, "doc": "how many" } },
+  "nodes": {
+    "late":  { "type": "toy.add", "in": { "a": "items.n", "b": "total.sum" } },
+    "items": { "type": "toy.count", "params": { "to": "${n}" } },
+    "total": { "type": "toy.sum", "in": { "all": "items" } }
+  },
+  "outputs": { "all": "late.sum", "total": "total.sum" }
+})";
+
+TEST_F(Load, SortsNodesAndFindsDomains) {
+  const auto graph = load(train_then_apply);
+  ASSERT_TRUE(graph) << diagnostics.str();
+  ASSERT_EQ(graph->nodes.size(), 3u);
+  EXPECT_EQ(graph->nodes[0].name, "items");
+  EXPECT_EQ(graph->nodes[0].domain, -1);
+  EXPECT_EQ(graph->nodes[1].name, "total");
+  EXPECT_EQ(graph->nodes[1].domain, -1);
+  EXPECT_TRUE(graph->nodes[1].inputs[0].gathers_stream);
+  EXPECT_EQ(graph->nodes[2].domain, 0);
+  EXPECT_EQ(graph->nodes[0].functor->parameters()["to"], 4);
+}
+
+TEST_F(Load, SetsParametersAndPaths) {
+  auto graph = load(train_then_apply, {"n=7"});
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_EQ(graph->nodes[0].functor->parameters()["to"], 7);
+  graph = load(train_then_apply, {"nodes.items.params.to=9", "nodes.late.params.bias=0.5"});
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_EQ(graph->nodes[0].functor->parameters()["to"], 9);
+  EXPECT_EQ(graph->nodes[2].functor->parameters()["bias"], 0.5);
+  expect_error(train_then_apply, "--set:1:1", "no parameter \"m\" (did you mean \"n\"?)", {"m=7"});
+  expect_error(train_then_apply, "--set:1:1", "there is no \"itms\" (did you mean \"items\"?)",
+               {"nodes.itms.params.to=7"});
+  expect_error(train_then_apply, "--set:1:1", "must be at least 0, got -1", {"n=-1"});
+  expect_error(train_then_apply, "--set:1:1", "takes path=value", {"n"});
+}
+
+TEST_F(Load, UsesAGraphAsANode) {
+  write("fragments/twice.json", R"({
+    "parameters": { "bias": { "default": 1 }, "what": {} },
+    "inputs": { "x": "Number", "extra": { "type": "Number", "optional": true } },
+    "nodes": {
+      "c": { "type": "toy.constant", "params": { "x": "${what}", "file": "data.bin" } },
+      "one": { "type": "toy.add", "in": { "a": "inputs.x", "b": "inputs.extra" }, "params": { "bias": "${bias}" } },
+      "two": { "type": "toy.add", "in": { "a": "one", "b": "c" } }
+    },
+    "outputs": { "y": "two.sum" }
+  })");
+  const auto graph = load(R"({
+    "nodes": {
+      "items": { "type": "toy.count" },
+      "f": { "graph": "fragments/twice.json", "in": { "x": "items.n" }, "params": { "what": 5 } },
+      "total": { "type": "toy.sum", "in": { "all": "f.y" } }
+    },
+    "outputs": { "total": "total" }
+  })");
+  ASSERT_TRUE(graph) << diagnostics.str();
+  ASSERT_EQ(graph->nodes.size(), 5u);
+  const auto named = [&](const std::string& name) {
+    for (const auto& n : graph->nodes)
+      if (n.name == name) return &n;
+    return static_cast<const Graph::Node*>(nullptr);
+  };
+  ASSERT_TRUE(named("f/two"));
+  EXPECT_EQ(named("f/two")->domain, 0);
+  EXPECT_TRUE(named("f/one")->inputs[1].sources.empty());
+  EXPECT_EQ(named("f/c")->domain, -1);
+  EXPECT_EQ(named("f/c")->functor->parameters()["file"], (folder / "fragments/data.bin").string());
+
+  // What a run folder keeps is a graph that loads again and means the same.
+  Diagnostics again;
+  const auto resolved = load_graph_text("resolved.json", graph->resolved.dump(), registry, again);
+  ASSERT_TRUE(resolved) << again.str();
+  EXPECT_EQ(resolved->resolved, graph->resolved);
+}
+
+TEST_F(Load, ChecksAFragmentByItself) {
+  const auto graph = load(R"({
+    "inputs": { "x": "Number", "many": "Stream<Number>" },
+    "nodes": { "s": { "type": "toy.sum", "in": { "all": "inputs.many" } },
+               "a": { "type": "toy.add", "in": { "a": "inputs.x", "b": "s" } } },
+    "outputs": { "y": "a" } })");
+  EXPECT_TRUE(graph) << diagnostics.str();
+  expect_error(R"({ "inputs": { "x": "Nmber" }, "nodes": {} })", "g.json:1:20", "did you mean \"Number\"?");
+}
+
+TEST_F(Load, CollectsNamedSingleValues) {
+  const auto graph = load(R"({ "nodes": {
+    "a": { "type": "toy.constant" }, "b": { "type": "toy.constant" },
+    "s": { "type": "toy.sum", "in": { "all": { "first": "a.n", "second": "b" } } } }, "outputs": { "s": "s" } })");
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_EQ(graph->nodes.back().inputs[0].names, (std::vector<std::string>{"first", "second"}));
+  EXPECT_FALSE(graph->nodes.back().inputs[0].gathers_stream);
+}
+
+TEST_F(Load, DropsNodesNobodyNeeds) {
+  const auto graph = load(R"({ "nodes": { "a": { "type": "toy.constant" }, "b": { "type": "toy.constant" } },
+                               "outputs": { "a": "a" } })");
+  ASSERT_TRUE(graph);
+  EXPECT_EQ(graph->nodes.size(), 1u);
+}
+
+TEST_F(Load, EmbedsAGraphGivenAsAParameter) {
+  write("speak.json", R"({ "parameters": { "k": { "default": 1 } },
+    "nodes": { "c": { "type": "toy.constant", "params": { "x": "${k}" } } }, "outputs": { "n": "c" } })");
+  const auto graph = load(R"({ "nodes": { "a": { "type": "toy.constant", "params":
+    { "inner": { "graph": "speak.json", "params": { "k": 8 } } } } }, "outputs": { "a": "a" } })");
+  ASSERT_TRUE(graph) << diagnostics.str();
+  const auto inner = Json::parse(graph->nodes[0].functor->parameters()["inner"].get<std::string>());
+  EXPECT_EQ(inner["nodes"]["c"]["params"]["x"], 8.0);
+}
+
+TEST_F(Load, ReportsBadJsonWithItsPlace) {
+  expect_error("{\n  \"nodes\": {,}\n}", "g.json:2:13", "not valid JSON");
+  expect_error("", "g.json:1:1", "not valid JSON");
+  expect_error("[1]", "g.json:1:1", "must be an object, got a list");
+  expect_error("{ \"nodes\": {}, \"nodes\": {} }", "g.json:1:16", "\"nodes\" stands twice");
+  EXPECT_FALSE(load_graph(folder / "h.json", registry, diagnostics));
+  EXPECT_THAT(diagnostics.str(), HasSubstr("did you mean \"g.json\"?"));
+}
+
+TEST_F(Load, ReportsUnknownNames) {
+  expect_error(R"({ "nodes": { "a": { "type": "toy.cuont" } } })", "g.json:1:29", "did you mean \"toy.count\"?");
+  expect_error(R"({ "nodes": { "a": { "typ": "toy.count" } } })", "g.json:1:21",
+               "unknown key \"typ\" (did you mean \"type\"?)");
+  expect_error(R"({ "nodes": { "a": { "type": "toy.count", "params": { "too": 1 } } } })", "g.json:1:54",
+               "did you mean \"to\"?");
+  expect_error(R"({ "nodes": { "a": { "type": "toy.spell", "in": { "m": "a" } } } })", "g.json:1:50",
+               "has no input \"m\" (did you mean \"n\"?)");
+  expect_error(
+      R"({ "nodes": { "a": { "type": "toy.spell", "in": { "n": "bb.n" } }, "b": { "type": "toy.constant" } } })",
+      "g.json:1:55", "there is no node \"bb\" (did you mean \"b\"?)");
+  expect_error(
+      R"({ "nodes": { "a": { "type": "toy.spell", "in": { "n": "b.m" } }, "b": { "type": "toy.constant" } } })",
+      "g.json:1:55", "has no output \"m\" (did you mean \"n\"?)");
+  expect_error(R"({ "nodes": { "a": { "graph": "nowhere.json" } } })", "g.json:1:30", "unknown graph");
+  expect_error(R"({ "nodes": { "a": { "type": "toy.count", "params": { "to": "${t}" } } } })", "g.json:1:60",
+               "unknown parameter ${t}");
+  expect_error(R"({ "nodes": { "a": { } } })", "g.json:1:14", "either a \"type\" or a \"graph\"");
+}
+
+TEST_F(Load, ReportsWrongWiring) {
+  expect_error(R"({ "nodes": { "a": { "type": "toy.spell" } } })", "g.json:1:14", "input \"n\" (Number) is not wired");
+  expect_error(R"({ "nodes": { "c": { "type": "toy.constant" }, "a": { "type": "toy.spell", "in": { "n": "c" } },
+    "b": { "type": "toy.spell", "in": { "n": "a.word" } } } })",
+               "g.json:2:46", "takes Number, but \"a.word\" gives Word");
+  expect_error(R"({ "nodes": { "a": { "type": "toy.add", "in": { "a": "b" } },
+    "b": { "type": "toy.add", "in": { "a": "a" } } }, "outputs": { "x": "a" } })",
+               "g.json:1:14", "form a cycle: a <- b <- a");
+  expect_error(R"({ "nodes": { "x": { "type": "toy.count" }, "y": { "type": "toy.count" },
+    "z": { "type": "toy.add", "in": { "a": "x", "b": "y" } } } })",
+               "g.json:2:5", "come from different streams, \"x\" and \"y\"");
+  expect_error(R"({ "nodes": { "c": { "type": "toy.constant" }, "s": { "type": "toy.sum", "in": { "all": "c" } } } })",
+               "g.json:1:47", "is a single value");
+}
+
+TEST_F(Load, ReportsEverythingInOneGo) {
+  load(R"({ "nodes": {
+    "a": { "type": "toy.cuont" },
+    "b": { "type": "toy.constant", "params": { "x": 1000 } },
+    "c": { "type": "toy.spell" } } })");
+  EXPECT_EQ(diagnostics.messages().size(), 3u) << diagnostics.str();
+}
+
+TEST_F(Load, RefusesAGraphThatContainsItself) {
+  write("loop.json", R"({ "nodes": { "a": { "graph": "loop.json" } } })");
+  expect_error(R"({ "nodes": { "l": { "graph": "loop.json" } } })", "loop.json:1:30", "contains itself");
+}
+
+}  // namespace
+}  // namespace talkgraph
