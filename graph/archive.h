@@ -106,10 +106,9 @@ void Archive::operator()(std::string_view name, T& value) {
     enter(name);
     bool present = value.has_value();
     (*this)("present", present);
-    if (present) {
-      if (!value) value.emplace();
-      (*this)("value", *value);
-    }
+    if (!present) value.reset();
+    if (present && !value) value.emplace();
+    if (present) (*this)("value", *value);
     leave();
   } else if constexpr (detail::is_vector<T>::value) {
     using Element = typename T::value_type;
