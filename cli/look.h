@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "graph/graph.h"
+
+namespace talkgraph::cli {
+
+/// The node types, a line each, those whose name or summary holds `word`.
+std::string list_nodes(const Registry& registry, const std::string& word);
+
+/// One node type whole: ports, parameters, source, an example to paste.
+/// Throws std::invalid_argument with a suggestion if there is none.
+std::string show_node(const Registry& registry, const std::string& type);
+
+/// A graph as Graphviz text, streams drawn with thick edges, types on the edges.
+std::string draw_dot(const Graph& graph);
+std::string draw_mermaid(const Graph& graph);
+
+}  // namespace talkgraph::cli

@@ -1,0 +1,125 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+#include <cstdio>
+#include <fstream>
+
+#include "cli/look.h"
+#include "cli/registry.h"
+#include "cli/run.h"
+#include "cli/speak.h"
+
+namespace {
+
+using namespace talkgraph;
+using namespace talkgraph::cli;
+
+std::optional<Graph> load(const std::string& file, const Registry& registry, const std::vector<std::string>& sets) {
+  Diagnostics diagnostics;
+  auto graph = load_graph(file, registry, diagnostics, {sets});
+  if (!graph) fmt::print(stderr, "{}", diagnostics.str());
+  return graph;
+}
+
+int check(const std::vector<std::string>& files, const Registry& registry, const std::vector<std::string>& sets) {
+  int code = success;
+  for (const auto& file : files) {
+    const auto graph = load(file, registry, sets);
+    if (graph)
+      fmt::print("{}: {} nodes, sound\n", file, graph->nodes.size());
+    else
+      code = usage;
+  }
+  return code;
+}
+
+int draw(const std::string& file, const Registry& registry, const std::vector<std::string>& sets,
+         const std::string& format, const std::string& output) {
+  const auto graph = load(file, registry, sets);
+  if (!graph) return usage;
+  const std::string text = format == "mermaid" ? draw_mermaid(*graph) : draw_dot(*graph);
+  if (format != "svg") {
+    if (output.empty()) return fmt::print("{}", text), success;
+    std::ofstream out(output);
+    return out << text && out.flush() ? success : (fmt::print(stderr, "{}: cannot be written\n", output), failed);
+  }
+  std::string command = "dot -Tsvg";
+  if (!output.empty()) command += " -o '" + CLI::detail::find_and_replace(output, "'", "'\\''") + "'";
+  std::FILE* dot = popen(command.c_str(), "w");
+  if (!dot) return fmt::print(stderr, "Graphviz (dot) cannot be started\n"), failed;
+  std::fputs(text.c_str(), dot);
+  return pclose(dot) == 0 ? success : (fmt::print(stderr, "Graphviz (dot) failed; --format dot needs none\n"), failed);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  CLI::App app{"talkgraph: learn a talking face from recordings of one speaker, then let new speech drive it"};
+  app.require_subcommand(1);
+  std::vector<std::string> sets, files;
+  std::string graph, word, type, format = "svg", output;
+  RunCommand run;
+  SpeakCommand speech;
+
+  auto* run_app = app.add_subcommand("run", "run a graph");
+  run_app->add_option("graph", graph, "graph file")->required();
+  run_app->add_option("--set", run.sets, "path=value, or parameter=value")->take_all()->allow_extra_args(false);
+  run_app->add_option("-o,--folder", run.folder, "run folder (default runs/<graph>-<time>)");
+  run_app->add_option("--threads", run.threads, "threads")->check(CLI::Range(1, 256));
+  run_app->add_flag("--serial", run.serial, "one thread, node by node");
+  run_app->add_flag("--keep-going", run.keep_going, "finish what can be finished, list what failed");
+  run_app->add_flag("-q,--quiet", run.quiet, "no progress");
+
+  auto* speak_app = app.add_subcommand("speak", "animate new speech with a trained model");
+  speak_app->add_option("model", speech.model, "model file that a run wrote")->required();
+  speak_app->add_option("speech", speech.files, "sound files");
+  speak_app->add_option("--text", speech.text, "what espeak-ng shall say, instead of sound files");
+  speak_app->add_option("--transcript", speech.transcripts, "what a sound file says; once for each, in order")
+      ->take_all()->allow_extra_args(false);
+  speak_app->add_option("-o,--output", speech.output, "clip (.mp4 or .webm); a folder for several sound files");
+  speak_app->add_option("--visemes", speech.visemes, "viseme track (.tsv or .json) in Rhubarb's format");
+  speak_app->add_option("--base", speech.base, "clip or still to draw upon");
+  speak_app->add_option("--set", speech.sets, "change the model's graph: path=value")->take_all()->allow_extra_args(false);
+  speak_app->add_option("--threads", speech.threads, "threads")->check(CLI::Range(1, 256));
+  speak_app->add_flag("-q,--quiet", speech.quiet, "no progress");
+
+  auto* check_app = app.add_subcommand("check", "check graphs without running them");
+  check_app->add_option("graphs", files, "graph files")->required();
+  check_app->add_option("--set", sets, "path=value")->take_all()->allow_extra_args(false);
+
+  auto* nodes_app = app.add_subcommand("nodes", "list the node types");
+  nodes_app->add_option("word", word, "only those that speak of it");
+
+  auto* node_app = app.add_subcommand("node", "show one node type: ports, parameters, an example");
+  node_app->add_option("type", type, "such as speech.mel")->required();
+
+  auto* draw_app = app.add_subcommand("draw", "draw a graph");
+  draw_app->add_option("graph", graph, "graph file")->required();
+  draw_app->add_option("--format", format, "svg, dot or mermaid")->check(CLI::IsMember({"svg", "dot", "mermaid"}));
+  draw_app->add_option("-o,--output", output, "file (default: standard output)");
+  draw_app->add_option("--set", sets, "path=value")->take_all()->allow_extra_args(false);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? success : usage;
+  }
+
+  try {
+    const Registry registry = all_nodes();
+    if (*run_app) return run_file(graph, run, registry);
+    if (*speak_app) return speak(speech, registry);
+    if (*check_app) return check(files, registry, sets);
+    if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
+    if (*node_app) return fmt::print("{}", show_node(registry, type)), success;
+    return draw(graph, registry, sets, format, output);
+  } catch (const std::invalid_argument& e) {
+    fmt::print(stderr, "talkgraph: {}\n", e.what());
+    return usage;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "talkgraph: {}\n", e.what());
+    return failed;
+  }
+}

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "graph/graph.h"
+#include "runtime/executor.h"
+
+namespace talkgraph::cli {
+
+/// What ends a command; documented in docs/cli.md.
+enum ExitCode { success = 0, failed = 1, usage = 2, cancelled = 130 };
+
+struct RunCommand {
+  std::vector<std::string> sets;
+  std::filesystem::path folder;  ///< empty: runs/<graph>-<time>
+  int threads = 2;
+  bool serial = false;
+  bool keep_going = false;
+  bool quiet = false;
+};
+
+/// `talkgraph run`: loads, checks and runs a graph in a run folder. The folder
+/// and what the graph's sinks wrote are named on stdout, all else on stderr.
+int run_file(const std::string& file, const RunCommand& command, const Registry& registry);
+
+/// Runs a checked graph with progress on stderr; Ctrl-C stops it. The result is
+/// empty if the run failed or was cancelled, which has been said by then.
+struct Outcome {
+  ExitCode code = success;
+  std::optional<RunResult> result;
+};
+Outcome run_graph(const Graph& graph, const RunCommand& command);
+
+}  // namespace talkgraph::cli

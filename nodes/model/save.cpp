@@ -1,0 +1,67 @@
+#include "nodes/model/save.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+namespace talkgraph {
+
+Artifact SaveModel::operator()(const AppearanceModel& face, const BaseClip& base, const Vlmm& contexts,
+                               const Ssgpdm& states, const Track& mean, Context& context) const {
+  TalkingFace all{face, base, contexts, states, mean, speak.json};
+  std::string format = model_format;
+  std::filesystem::create_directories((context.folder / name).parent_path());
+  const auto path = context.folder / name, temporary = context.folder / (name + ".part");
+  {
+    const auto ar = hdf5_writer(temporary.string());
+    (*ar)("format", format);
+    (*ar)("model", all);
+  }
+  std::filesystem::rename(temporary, path);
+  return {name, "trained model"};
+}
+
+void describe(Description<SaveModel>& d) {
+  d.type("model.save").summary("writes a talking face, with the graph that speaks with it, to one HDF5 file").sink();
+  d.input("face").input("base").input("contexts").input("states").input("mean", "mean visual parameters, 1 x D");
+  d.output("file");
+  d.param("name", &SaveModel::name).doc("file below the run folder");
+  d.param("speak", &SaveModel::speak).doc("graph that speaks with the model; kept in the file, resolved");
+}
+
+namespace {
+
+/// Opens a model file that is what it says.
+std::unique_ptr<Archive> open_model(const std::string& file) {
+  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file + ": there is no such model file");
+  auto ar = hdf5_reader(file);
+  std::string format;
+  try {
+    (*ar)("format", format);
+  } catch (const std::runtime_error&) {
+    throw std::runtime_error(file + ": is an HDF5 file but not a talkgraph model");
+  }
+  if (format != model_format)
+    throw std::runtime_error(file + ": has the format \"" + format + "\"; this program reads \"" + model_format + "\"");
+  return ar;
+}
+
+struct GraphOnly {
+  std::string speak;
+};
+void fields(Archive& ar, GraphOnly& g) { ar("speak", g.speak); }
+
+}  // namespace
+
+TalkingFace load_model(const std::string& file) {
+  TalkingFace all;
+  (*open_model(file))("model", all);
+  return all;
+}
+
+std::string model_graph(const std::string& file) {
+  GraphOnly only;
+  (*open_model(file))("model", only);
+  return only.speak;
+}
+
+}  // namespace talkgraph

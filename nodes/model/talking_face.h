@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "nodes/types/appearance_model.h"
+#include "nodes/types/base_clip.h"
+#include "nodes/types/ssgpdm.h"
+#include "nodes/types/track.h"
+#include "nodes/types/vlmm.h"
+
+namespace talkgraph {
+
+/// All that is needed to let new speech drive a learnt face, in one file.
+struct TalkingFace {
+  AppearanceModel face;
+  BaseClip base;      ///< pictures that speech is drawn upon
+  Vlmm contexts;
+  Ssgpdm states;
+  Track mean;         ///< 1 × D: mean visual parameters of the training clips
+  std::string speak;  ///< the graph that speaks with these, resolved, as JSON
+};
+template <>
+inline constexpr PortType port_type<TalkingFace>{"TalkingFace", 1};
+void fields(Archive& ar, TalkingFace& f);
+
+}  // namespace talkgraph
