@@ -1,0 +1,49 @@
+#include "runtime/executor.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "runtime/books.h"
+#include "runtime/executors.h"
+
+namespace talkgraph {
+
+const RunResult::Output& RunResult::output(const std::string& name) const {
+  for (const auto& o : outputs)
+    if (o.name == name) return o;
+  throw std::out_of_range("the graph has no output \"" + name + "\"");
+}
+
+RunResult run(const Graph& graph, const RunOptions& options) {
+  if (options.threads < 1)
+    throw std::invalid_argument(fmt::format("threads must be at least 1, got {}", options.threads));
+  if (options.in_flight < 0)
+    throw std::invalid_argument(fmt::format("in_flight must not be negative, got {}", options.in_flight));
+  const int in_flight = options.in_flight ? options.in_flight : 2 * options.threads + 2;
+
+  const auto start = std::chrono::steady_clock::now();
+  Caller caller(graph, options);
+  for (auto* o : options.observers) o->started(graph);
+  const auto end = [&](RunReport::Status status, std::string error) {
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    const RunReport report{status, std::move(error), wall.count(), caller.stats(), caller.failures()};
+    for (auto* o : options.observers) o->ended(report);
+    return report;
+  };
+  try {
+    auto outputs = options.executor == Executor::serial ? run_serial(graph, caller)
+                                                        : run_flow(graph, caller, options.threads, in_flight);
+    check_books(graph, caller.stats());
+    auto report = end(RunReport::Status::finished, "");
+    return {std::move(outputs), std::move(report.nodes), std::move(report.failures), report.wall};
+  } catch (const Cancelled&) {
+    end(RunReport::Status::cancelled, "");
+    throw;
+  } catch (const std::exception& e) {
+    end(RunReport::Status::failed, e.what());
+    throw;
+  }
+}
+
+}  // namespace talkgraph

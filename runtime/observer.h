@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graph/graph.h"
+
+namespace talkgraph {
+
+/// An item that could not be computed.
+struct Failure {
+  std::string node;
+  std::string item;   ///< key, empty for a node that runs once
+  std::string place;  ///< file:line:column of the node, where known
+  std::string cause;
+
+  /// `file:line:column: node "x", item "k": cause`
+  std::string str() const;
+};
+
+/// What passed a port: every item is counted, also one for which there is nothing.
+struct PortCount {
+  std::uint64_t items = 0;
+  std::uint64_t values = 0;
+  bool operator==(const PortCount&) const = default;
+};
+
+struct NodeStats {
+  std::uint64_t calls = 0;    ///< of the functor; items made, for a source
+  std::uint64_t skipped = 0;  ///< not called, because an input had nothing
+  std::uint64_t failed = 0;
+  double wall = 0;  ///< seconds in calls, added up over threads
+  double cpu = 0;   ///< seconds of processor time
+  std::vector<PortCount> in, out;
+};
+
+/// How a run ended, whichever way it did.
+struct RunReport {
+  enum class Status { finished, failed, cancelled };
+  Status status = Status::finished;
+  std::string error;             ///< what stopped a failed run
+  double wall = 0;               ///< seconds
+  std::vector<NodeStats> nodes;  ///< as in the graph
+  std::vector<Failure> failures;
+};
+
+/// Watches a run: progress, a log, a trace. Nodes are given by their index.
+/// Called from several threads at once.
+class RunObserver {
+ public:
+  virtual ~RunObserver() = default;
+  virtual void started(const Graph&) {}
+  /// The number of items that a source will make, or has made, is known.
+  virtual void domain_size(int /*source*/, std::size_t /*items*/) {}
+  virtual void call_started(int /*node*/, const std::string& /*item*/) {}
+  /// The node is done with an item: called, skipped or failed. For a source: an item made.
+  virtual void item_done(int /*node*/, const std::string& /*item*/) {}
+  /// What a node tells through its Context.
+  virtual void progress(int /*node*/, const std::string& /*item*/, double /*share*/) {}
+  virtual void log(int /*node*/, const std::string& /*item*/, std::string_view /*message*/) {}
+  virtual void failed(const Failure&) {}
+  virtual void ended(const RunReport&) {}
+};
+
+}  // namespace talkgraph

@@ -1,0 +1,121 @@
+#include "runtime/run_folder.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+
+namespace talkgraph {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string utc(std::chrono::system_clock::time_point t, const char* format) {
+  return fmt::format(fmt::runtime(fmt::format("{{:{}}}", format)),
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(t)));
+}
+std::string iso(std::chrono::system_clock::time_point t) { return utc(t, "%Y-%m-%dT%H:%M:%SZ"); }
+
+fs::path unused_folder(const Graph& graph, std::chrono::system_clock::time_point now) {
+  std::string name = fs::path(graph.name).stem().string();
+  if (name.empty()) name = "graph";
+  const fs::path wanted = fs::path("runs") / (name + "-" + utc(now, "%Y%m%dT%H%M%SZ"));
+  fs::path path = wanted;
+  for (int i = 2; fs::exists(path); ++i) path = wanted.string() + "-" + std::to_string(i);
+  return path;
+}
+
+}  // namespace
+
+void write_file_atomically(const fs::path& path, std::string_view text) {
+  const fs::path temporary = path.string() + ".part-" + std::to_string(getpid());
+  const auto fail = [&] {
+    const std::string why = std::strerror(errno);
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw std::runtime_error(fmt::format("{} cannot be written: {}", path.string(), why));
+  };
+  errno = 0;
+  std::ofstream file(temporary, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) fail();
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail();
+}
+
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+RunFolder::RunFolder(const Graph& graph, fs::path path)
+    : graph_(graph), path_(path.empty() ? unused_folder(graph, started_) : std::move(path)) {
+  try {
+    fs::create_directories(path_);
+    write_file_atomically(path_ / "graph.resolved.json", graph.resolved.dump(2) + "\n");
+    write_file_atomically(path_ / "run.json", header("running").dump(2) + "\n");
+    log_.open(path_ / "log.txt", std::ios::app);
+    if (!log_) throw std::runtime_error(fmt::format("{} cannot be written", (path_ / "log.txt").string()));
+  } catch (const std::exception& e) {
+    throw std::runtime_error(
+        fmt::format("the run folder {} cannot be used: {}; choose another one", path_.string(), e.what()));
+  }
+}
+
+void RunFolder::log(std::string_view message) {
+  const std::lock_guard lock(mutex_);
+  log_ << iso(Clock::now()) << ' ' << message << std::endl;
+}
+
+void RunFolder::started(const Graph&) { log(fmt::format("started {}", graph_.name)); }
+
+void RunFolder::log(int node, const std::string& item, std::string_view message) {
+  const auto& name = graph_.nodes[static_cast<std::size_t>(node)].name;
+  log(item.empty() ? fmt::format("{}: {}", name, message) : fmt::format("{} [{}]: {}", name, item, message));
+}
+
+void RunFolder::failed(const Failure& failure) { log(failure.str()); }
+
+Json RunFolder::header(const std::string& status) const {
+  Json json;
+  json["status"] = status;
+  json["graph"] = graph_.name;
+  json["started"] = iso(started_);
+  return json;
+}
+
+void RunFolder::ended(const RunReport& report) {
+  using Status = RunReport::Status;
+  const std::string status = report.status == Status::finished ? "finished"
+                             : report.status == Status::failed ? "failed"
+                                                               : "cancelled";
+  Json json = header(status);
+  json["ended"] = iso(Clock::now());
+  json["seconds"] = report.wall;
+  json["peak_memory_bytes"] = peak_memory();
+  if (!report.error.empty()) json["error"] = report.error;
+  json["failures"] = Json::array();
+  for (const auto& f : report.failures)
+    json["failures"].push_back({{"node", f.node}, {"item", f.item}, {"place", f.place}, {"cause", f.cause}});
+  json["nodes"] = Json::array();
+  for (std::size_t n = 0; n < report.nodes.size(); ++n) {
+    const auto& stats = report.nodes[n];
+    json["nodes"].push_back({{"name", graph_.nodes[n].name},
+                             {"type", graph_.nodes[n].type->name},
+                             {"calls", stats.calls},
+                             {"skipped", stats.skipped},
+                             {"failed", stats.failed},
+                             {"seconds", stats.wall},
+                             {"cpu_seconds", stats.cpu}});
+  }
+  write_file_atomically(path_ / "run.json", json.dump(2) + "\n");
+  log(report.error.empty() ? status : status + ": " + report.error);
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "runtime/observer.h"
+
+namespace talkgraph {
+
+/// Writes a file by way of a temporary one beside it, so that a half-written
+/// one is never seen. Throws std::runtime_error naming the file.
+void write_file_atomically(const std::filesystem::path& path, std::string_view text);
+
+/// Most memory this process has held so far, bytes.
+std::size_t peak_memory();
+
+/// The folder of one run. Holds
+///   graph.resolved.json  the graph as it can be run again
+///   log.txt              what nodes said and what failed, with UTC times
+///   run.json             status (running, finished, failed, cancelled), started and ended, seconds,
+///                        peak memory, calls and times of each node, failures
+/// and what sinks write. Give it to the run as an observer.
+class RunFolder final : public RunObserver {
+ public:
+  /// Makes the folder, `runs/<graph>-<UTC time>` unless a path is given (which
+  /// may exist). Throws std::runtime_error if it cannot be written.
+  explicit RunFolder(const Graph& graph, std::filesystem::path path = {});
+
+  const std::filesystem::path& path() const { return path_; }
+  void log(std::string_view message);
+
+  void started(const Graph&) override;
+  void log(int node, const std::string& item, std::string_view message) override;
+  void failed(const Failure&) override;
+  void ended(const RunReport&) override;
+
+ private:
+  using Clock = std::chrono::system_clock;
+  Json header(const std::string& status) const;
+
+  const Graph& graph_;
+  std::filesystem::path path_;
+  Clock::time_point started_ = Clock::now();
+  std::mutex mutex_;
+  std::ofstream log_;
+};
+
+}  // namespace talkgraph
