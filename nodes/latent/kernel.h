@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "nodes/types/sgpdm.h"
+
+namespace talkgraph {
+
+using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
+using MatrixView = Eigen::Ref<Eigen::MatrixXd>;
+using VectorView = Eigen::Ref<Eigen::VectorXd>;
+
+/// Number of log parameters: an RBF term has two (variance, inverse width), the others one (variance).
+Eigen::Index parameter_count(const Kernel& kernel);
+/// Their names, in order: "rbf_variance", "inverse_width", "linear", "bias", "white".
+std::vector<std::string> parameter_names(const Kernel& kernel);
+/// Natural logarithms of the parameters, of white noise without its floor.
+Eigen::VectorXd log_parameters(const Kernel& kernel);
+void set_log_parameters(Kernel& kernel, const Eigen::Ref<const Eigen::VectorXd>& logs);
+
+/// Variance of the white terms.
+double white_variance(const Kernel& kernel);
+/// Adds the derivative with respect to the log parameters, given that with respect to the white variance.
+void white_gradient(const Kernel& kernel, double derivative, VectorView logs);
+
+/// k(x, x) of every row, without white noise.
+void diagonal(const Kernel& kernel, const ConstMatrix& x, VectorView values);
+/// Adds derivatives given those with respect to diagonal(), `g`.
+void diagonal_gradient(const Kernel& kernel, const ConstMatrix& x, const Eigen::Ref<const Eigen::VectorXd>& g,
+                       MatrixView x_gradient, VectorView logs);
+
+/// The matrix k(A, B) without white noise, with what its gradient needs; its
+/// memory is used again by the next computation of the same size.
+class KernelMatrix {
+ public:
+  /// A is n × d, B is m × d; the result n × m.
+  const Eigen::MatrixXd& compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b);
+  const Eigen::MatrixXd& value() const { return value_; }
+
+  /// Adds to the gradients with respect to A, B and the log parameters, given
+  /// the derivative `g` with respect to the matrix. Takes the arguments of the
+  /// last computation; A and B, and their gradients, may be the same.
+  void gradient(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b, const ConstMatrix& g,
+                MatrixView a_gradient, MatrixView b_gradient, VectorView logs);
+
+ private:
+  Eigen::MatrixXd value_, product_, a_sum_, b_sum_;
+  std::vector<Eigen::MatrixXd> rbf_;  // of each RBF term
+  Eigen::VectorXd a_norm_, b_norm_;
+  Eigen::VectorXd a_total_, b_total_;
+};
+
+}  // namespace talkgraph

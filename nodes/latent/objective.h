@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace talkgraph {
+
+/// A cost to be minimised, such as a negative log-likelihood.
+class Objective {
+ public:
+  virtual ~Objective() = default;
+  /// Number of parameters.
+  virtual Eigen::Index size() const = 0;
+  /// Computes the cost and, where `gradient` is not null, its derivatives; the
+  /// cost is the same bits either way. Returns false where the cost cannot be
+  /// evaluated (a matrix that cannot be factorised); optimisers step back.
+  virtual bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) = 0;
+};
+
+/// What comparing an objective's gradient with central differences gave.
+struct GradientCheck {
+  bool evaluated = false;        ///< every evaluation succeeded
+  bool cost_consistent = false;  ///< the cost does not depend on whether the gradient was asked for
+  double worst = 0;              ///< largest |analytic − numeric| over max(1, largest |numeric|)
+  Eigen::Index where = -1;       ///< parameter of the largest difference
+  Eigen::VectorXd analytic, numeric;
+};
+
+/// Central differences of fourth order with steps of `step` · max(1, |parameter|).
+GradientCheck check_gradient(Objective& objective, const Eigen::VectorXd& parameters, double step = 5e-4);
+
+}  // namespace talkgraph

@@ -1,0 +1,57 @@
+#include "nodes/latent/predictive.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace talkgraph {
+
+void Predictive::compute(const GaussianProcess& gp, const ConstMatrix& x) {
+  const Eigen::MatrixXd& k = kernel_.compute(gp.kernel, x, gp.basis);
+  mean_.resize(x.rows(), gp.weights.cols());
+  mean_.noalias() = k * gp.weights;
+  reduced_.resize(x.rows(), gp.basis.rows());
+  reduced_.noalias() = k * gp.reduction;
+  variance_.resize(x.rows());
+  diagonal(gp.kernel, x, variance_);
+  variance_ -= reduced_.cwiseProduct(k).rowwise().sum();
+  const double noise = white_variance(gp.kernel);
+  variance_ = variance_.cwiseMax(0);
+  variance_.array() += noise;
+}
+
+double Predictive::log_density(const ConstMatrix& y) {
+  residual_ = y - mean_;
+  const double d = static_cast<double>(y.cols());
+  return -0.5 * (d * (variance_.array() * (2 * std::numbers::pi)).log().sum() +
+                 (residual_.rowwise().squaredNorm().array() / variance_.array()).sum());
+}
+
+void Predictive::gradient(const GaussianProcess& gp, const ConstMatrix& x, double weight, MatrixView x_gradient,
+                          MatrixView y_gradient) {
+  const double d = static_cast<double>(residual_.cols());
+  const double noise = white_variance(gp.kernel);
+  variance_gradient_ =
+      weight * 0.5 * (residual_.rowwise().squaredNorm().array() / variance_.array().square() - d / variance_.array());
+  for (Eigen::Index t = 0; t < variance_.size(); ++t)
+    if (variance_[t] <= noise) variance_gradient_[t] = 0;
+  residual_.array().colwise() *= weight / variance_.array();
+  y_gradient -= residual_;
+  g_.resize(x.rows(), gp.basis.rows());
+  g_.noalias() = residual_ * gp.weights.transpose();
+  for (Eigen::Index j = 0; j < g_.cols(); ++j)
+    g_.col(j).array() -= 2 * variance_gradient_.array() * reduced_.col(j).array();
+  basis_gradient_.setZero(gp.basis.rows(), gp.basis.cols());
+  logs_.setZero(parameter_count(gp.kernel));
+  kernel_.gradient(gp.kernel, x, gp.basis, g_, x_gradient, basis_gradient_, logs_);
+  diagonal_gradient(gp.kernel, x, variance_gradient_, x_gradient, logs_);
+}
+
+Eigen::MatrixXd unscaled(const GaussianProcess& gp, const Eigen::MatrixXd& scaled) {
+  return (scaled.array().rowwise() * gp.scale.array()).rowwise() + gp.mean.array();
+}
+
+Eigen::MatrixXd scaled(const GaussianProcess& gp, const Eigen::MatrixXd& outputs) {
+  return (outputs.array().rowwise() - gp.mean.array()).rowwise() / gp.scale.array();
+}
+
+}  // namespace talkgraph

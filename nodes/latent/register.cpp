@@ -1,0 +1,9 @@
+#include "nodes/latent/register.h"
+
+#include "nodes/latent/sgpdm.h"
+
+namespace talkgraph {
+
+void register_latent(Registry& registry) { registry.add<TrainSgpdm>(); }
+
+}  // namespace talkgraph

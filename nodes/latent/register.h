@@ -1,0 +1,10 @@
+#pragma once
+
+#include "graph/registry.h"
+
+namespace talkgraph {
+
+/// Adds the node types of this family: latent.sgpdm.
+void register_latent(Registry& registry);
+
+}  // namespace talkgraph

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "nodes/latent/objective.h"
+#include "nodes/latent/predictive.h"
+#include "nodes/types/sgpdm.h"
+
+namespace talkgraph {
+
+/// Negative log-likelihood of new audio frames and their latent points under a
+/// trained SGPDM, as a function of the latent points (T × d, column by column):
+/// the predictive density of the audio with its variance, with dynamics also
+/// that of every step and the prior of the first point (Eqn 4.78), without
+/// them Eqn 4.77 for independent points.
+class SequenceObjective : public Objective {
+ public:
+  /// `audio` is T × D_Y, scaled; it and the model must outlive the objective.
+  SequenceObjective(const Sgpdm& model, const Eigen::MatrixXd& audio, bool with_dynamics);
+  /// Adds weight · ln p(visual | first point) under the visual process, which
+  /// draws the first frame towards that of the segment before; `visual` is 1 × D_Z, scaled.
+  void follow(Eigen::RowVectorXd visual, double weight);
+
+  Eigen::Index size() const override { return audio_.rows() * model_.latents.cols(); }
+  bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) override;
+
+ private:
+  double dynamics(const Eigen::MatrixXd& x, bool with_gradient);
+  double boundary(const Eigen::MatrixXd& x, bool with_gradient);
+
+  const Sgpdm& model_;
+  const Eigen::MatrixXd& audio_;
+  bool with_dynamics_;
+  Eigen::MatrixXd before_;
+  double follow_weight_ = 0;
+  Predictive f_, g_, h_;
+  Eigen::MatrixXd x_, x_gradient_, audio_gradient_, visual_gradient_;
+};
+
+}  // namespace talkgraph

@@ -1,0 +1,70 @@
+#include "nodes/mapping/ssgpdm.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <stdexcept>
+
+namespace talkgraph {
+
+namespace {
+
+std::string last_phone(const std::string& label) {
+  const auto dash = label.rfind('-');
+  return dash == std::string::npos ? label : label.substr(dash + 1);
+}
+
+}  // namespace
+
+Ssgpdm AssembleSsgpdm::operator()(const Collected<Sgpdm>& states) const {
+  if (states.empty()) throw std::runtime_error("no trained states: the training set made no windows");
+  Ssgpdm model;
+  double frames = 0;
+  model.visual_mean.setZero(states[0].visual.mean.size());
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const Sgpdm& s = states[i];
+    if (s.audio.mean.size() != states[0].audio.mean.size() || s.visual.mean.size() != states[0].visual.mean.size())
+      throw std::runtime_error(fmt::format(
+          "state \"{}\" has {} audio and {} visual dimensions, state \"{}\" {} and {}: train all on the same features",
+          s.label, s.audio.mean.size(), s.visual.mean.size(), states[0].label, states[0].audio.mean.size(),
+          states[0].visual.mean.size()));
+    if (!model.states.emplace(s.label, s).second) throw std::runtime_error("two states are called \"" + s.label + "\"");
+    auto& ending = model.ending[last_phone(s.label)];
+    if (ending.empty() || s.latents.rows() > model.states.at(ending).latents.rows()) ending = s.label;
+    const auto weight = static_cast<double>(s.latents.rows());
+    model.visual_mean += weight * s.visual.mean;
+    frames += weight;
+  }
+  model.visual_mean /= frames;
+  return model;
+}
+
+const Sgpdm& state_for(const Ssgpdm& model, const std::string& label, const Eigen::RowVectorXd& audio_mean) {
+  for (std::string suffix = label;;) {
+    if (const auto found = model.states.find(suffix); found != model.states.end()) return found->second;
+    const auto dash = suffix.find('-');
+    if (dash == std::string::npos) break;
+    suffix.erase(0, dash + 1);
+  }
+  if (const auto found = model.ending.find(last_phone(label)); found != model.ending.end())
+    return model.states.at(found->second);
+  const Sgpdm* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [name, state] : model.states) {
+    const double distance =
+        ((audio_mean - state.audio.mean).array() / state.audio.scale.array()).matrix().squaredNorm();
+    if (nearest && distance >= least) continue;
+    nearest = &state;
+    least = distance;
+  }
+  return *nearest;
+}
+
+void describe(Description<AssembleSsgpdm>& d) {
+  d.type("mapping.ssgpdm").version(1);
+  d.summary("Puts the trained SGPDMs of all states together into one switching model.");
+  d.source("Thesis §5.1.");
+  d.input("states", "one trained SGPDM a state").output("model");
+}
+
+}  // namespace talkgraph

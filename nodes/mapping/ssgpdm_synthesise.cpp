@@ -1,0 +1,191 @@
+#include "nodes/mapping/ssgpdm_synthesise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "nodes/latent/scg.h"
+#include "nodes/latent/sequence_objective.h"
+#include "nodes/mapping/ssgpdm.h"
+
+namespace talkgraph {
+
+namespace {
+
+using Boundary = std::optional<Eigen::RowVectorXd>;  // visual frame before the segment
+
+void check(const Ssgpdm& model, const Track& audio, const SegmentTrack& segments) {
+  if (model.states.empty()) throw std::runtime_error("the switching model has no states; train it first");
+  const auto dims = model.states.begin()->second.audio.mean.size();
+  if (audio.frames() > 0 && audio.dimension() != dims)
+    throw std::runtime_error(
+        fmt::format("audio of {} dimensions, but the model was trained on {}: use the same "
+                    "speech parameters",
+                    audio.dimension(), dims));
+  if (!audio.values.allFinite()) throw std::runtime_error("the audio features hold a value that is not finite");
+  if (std::abs(audio.frames() - segments.frames) > 2)
+    throw std::runtime_error(
+        fmt::format("{} audio frames but segments for {}: both must come from one utterance at "
+                    "one rate",
+                    audio.frames(), segments.frames));
+  std::int64_t next = 0;
+  for (const auto& s : segments.segments) {
+    if (s.start != next || s.length < 1)
+      throw std::runtime_error(fmt::format("segment \"{}\" starts at frame {} with {} frames, but frame {} comes next",
+                                           s.label, s.start, s.length, next));
+    next += s.length;
+  }
+  if (next != segments.frames)
+    throw std::runtime_error(fmt::format("segments end at frame {} of {}", next, segments.frames));
+}
+
+Eigen::MatrixXd nearest_frames(const Sgpdm& state, const Eigen::MatrixXd& audio) {
+  Eigen::MatrixXd x(audio.rows(), state.latents.cols());
+  for (Eigen::Index t = 0; t < audio.rows(); ++t) {
+    Eigen::Index nearest = 0;
+    (state.audio_frames.rowwise() - audio.row(t)).rowwise().squaredNorm().minCoeff(&nearest);
+    x.row(t) = state.latents.row(nearest);
+  }
+  return x;
+}
+
+/// Frame of a window of `window` frames that frame t of `length` stands beside.
+Eigen::Index partner(Eigen::Index t, Eigen::Index length, Eigen::Index window, Eigen::Index offset) {
+  if (length <= window) return offset + t;
+  return static_cast<Eigen::Index>(
+      std::lround(static_cast<double>(t * (window - 1)) / static_cast<double>(length - 1)));
+}
+
+Eigen::MatrixXd nearest_window(const Sgpdm& state, const Eigen::MatrixXd& audio) {
+  const Eigen::Index length = audio.rows();
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::Index best_start = 0, best_offset = 0, best_window = 1, start = 0;
+  for (const auto window : state.lengths) {
+    for (Eigen::Index offset = 0; offset <= std::max<Eigen::Index>(0, window - length); ++offset) {
+      double distance = 0;
+      for (Eigen::Index t = 0; t < length && distance < least; ++t)
+        distance += (state.audio_frames.row(start + partner(t, length, window, offset)) - audio.row(t)).squaredNorm();
+      if (distance >= least) continue;
+      least = distance;
+      best_start = start;
+      best_offset = offset;
+      best_window = window;
+    }
+    start += window;
+  }
+  Eigen::MatrixXd x(length, state.latents.cols());
+  for (Eigen::Index t = 0; t < length; ++t)
+    x.row(t) = state.latents.row(best_start + partner(t, length, best_window, best_offset));
+  return x;
+}
+
+/// The latent points of one segment.
+class SegmentSearch {
+ public:
+  SegmentSearch(const SynthesiseSsgpdm& node, const Sgpdm& state, const Eigen::MatrixXd& audio, const Boundary& before)
+      : node_(node), state_(state), audio_(audio), before_(before) {
+    x_ = node.initial == LatentInitial::frame ? nearest_frames(state, audio) : nearest_window(state, audio);
+    optimiser_.iterations = node.iterations;
+    optimiser_.step_tolerance = optimiser_.cost_tolerance = 1e-3;
+  }
+
+  Eigen::MatrixXd latents() {
+    const bool moves = node_.dynamics && state_.dynamics && x_.rows() > 1;
+    switch (node_.method) {
+      case LatentSearch::initial:
+        break;
+      case LatentSearch::optimise:
+        moves ? optimise(0, x_.rows(), true) : points();
+        break;
+      case LatentSearch::predict:
+        moves ? predict() : points();
+        break;
+    }
+    return x_;
+  }
+
+ private:
+  void optimise(Eigen::Index from, Eigen::Index count, bool with_dynamics) {
+    const Eigen::MatrixXd audio = audio_.middleRows(from, count);
+    SequenceObjective objective(state_, audio, with_dynamics);
+    if (from == 0 && before_ && node_.smoothness > 0) objective.follow(*before_, node_.smoothness);
+    Eigen::VectorXd p = x_.middleRows(from, count).reshaped();
+    optimiser_.minimise(objective, p);
+    x_.middleRows(from, count) = p.reshaped(count, x_.cols());
+  }
+  void points() {
+    for (Eigen::Index t = 0; t < x_.rows(); ++t) optimise(t, 1, false);
+  }
+  void predict() {
+    optimise(0, 1, false);
+    Predictive h;
+    for (Eigen::Index t = 1; t < x_.rows(); ++t) {
+      h.compute(*state_.dynamics, x_.row(t - 1));
+      x_.row(t) = h.mean();
+    }
+  }
+
+  const SynthesiseSsgpdm& node_;
+  const Sgpdm& state_;
+  const Eigen::MatrixXd& audio_;
+  const Boundary& before_;
+  Eigen::MatrixXd x_;
+  ScaledConjugateGradients optimiser_;
+};
+
+Track track_like(const Track& audio, Eigen::Index frames, Eigen::Index dims) {
+  Track t;
+  t.values.setZero(frames, dims);
+  t.rate = audio.rate;
+  t.start = audio.start;
+  return t;
+}
+
+}  // namespace
+
+SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Track& audio,
+                                                   const SegmentTrack& segments, Context& context) const {
+  check(model, audio, segments);
+  const Eigen::Index frames = std::min<Eigen::Index>(audio.frames(), segments.frames);
+  Out out{track_like(audio, frames, model.visual_mean.size()), track_like(audio, frames, model.visual_mean.size())};
+  Predictive visual;
+  for (const auto& segment : segments.segments) {
+    const Eigen::Index length = std::min<Eigen::Index>(segment.length, frames - segment.start);
+    if (length < 1) break;
+    context.check_cancelled();
+    const Eigen::MatrixXd heard = audio.values.middleRows(segment.start, length);
+    const Sgpdm& state = state_for(model, segment.label, heard.colwise().mean());
+    Boundary before;
+    if (segment.start > 0) before = scaled(state.visual, out.visual.values.row(segment.start - 1));
+    const Eigen::MatrixXd scaled_audio = scaled(state.audio, heard);
+    visual.compute(state.visual, SegmentSearch(*this, state, scaled_audio, before).latents());
+    out.visual.values.middleRows(segment.start, length) = unscaled(state.visual, visual.mean());
+    out.deviation.values.middleRows(segment.start, length) = visual.variance().cwiseSqrt() * state.visual.scale;
+    context.progress(static_cast<double>(segment.start + length) / static_cast<double>(frames));
+  }
+  return out;
+}
+
+void describe(Description<SynthesiseSsgpdm>& d) {
+  d.type("mapping.ssgpdm_synthesise").version(1);
+  d.summary("Visual features of new speech by a switching SGPDM.");
+  d.source("Thesis §4.4, §5.3, Eqns 4.76-4.79, Algorithms 7 and 8, with the corrections of the method's digest.");
+  d.input("model").input("audio", "speech features at the video rate").input("segments", "states of the speech");
+  d.output("visual", &SynthesiseSsgpdm::Out::visual, "mean of the visual process");
+  d.output("deviation", &SynthesiseSsgpdm::Out::deviation, "predictive standard deviation of every value");
+  d.param("method", &SynthesiseSsgpdm::method)
+      .doc("optimise: Algorithm 7; predict: Algorithm 8; initial: nearest neighbours only");
+  d.param("initial", &SynthesiseSsgpdm::initial)
+      .doc("start values: each frame's nearest training frame, or the nearest training window");
+  d.param("smoothness", &SynthesiseSsgpdm::smoothness)
+      .at_least(0)
+      .doc("weight of the term that draws a segment's first frame to the end of the one before; 0: none");
+  d.param("dynamics", &SynthesiseSsgpdm::dynamics).doc("off: every frame is optimised by itself");
+  d.param("iterations", &SynthesiseSsgpdm::iterations).at_least(0).doc("limit of scaled conjugate gradients a segment");
+}
+
+}  // namespace talkgraph

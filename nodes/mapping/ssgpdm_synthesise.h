@@ -1,0 +1,53 @@
+#pragma once
+
+#include "graph/context.h"
+#include "graph/description.h"
+#include "nodes/types/segments.h"
+#include "nodes/types/ssgpdm.h"
+#include "nodes/types/track.h"
+
+namespace talkgraph {
+
+enum class LatentSearch {
+  optimise,  ///< Algorithm 7: point optimisation of one-frame segments, sequence optimisation of others
+  predict,   ///< Algorithm 8: the first frame of a segment is optimised, the others follow from the dynamics
+  initial    ///< the start values as they are
+};
+template <>
+inline constexpr EnumNames<LatentSearch, 3> enum_names<LatentSearch>{
+    {{LatentSearch::optimise, "optimise"}, {LatentSearch::predict, "predict"}, {LatentSearch::initial, "initial"}}};
+
+enum class LatentInitial {
+  frame,  ///< each frame the latent point of its nearest training frame
+  window  ///< the latent path of the nearest training window, at its best offset or stretched
+};
+template <>
+inline constexpr EnumNames<LatentInitial, 2> enum_names<LatentInitial>{
+    {{LatentInitial::frame, "frame"}, {LatentInitial::window, "window"}}};
+
+/// Visual features of new speech by a switching SGPDM, segment after segment
+/// (spec §5, Algorithms 7 and 8): start values from the state's nearest
+/// training audio, optimisation of the latent points, mean of the visual process
+/// (Eqn 4.76). A segment whose label has no state is answered by state_for(). A
+/// segment may be shorter or longer than the state's training windows.
+///
+/// Audio and segments that differ by at most 2 frames are used on their common
+/// beginning. Throws std::runtime_error if they differ by more, if segments leave
+/// gaps or overlap, on another audio dimension than the model's, or on values
+/// that are not finite. No frames give no frames.
+struct SynthesiseSsgpdm {
+  struct Out {
+    Track visual;     ///< T × D_Z, rate and start of the audio
+    Track deviation;  ///< predictive standard deviation given the latent points, T × D_Z
+  };
+  LatentSearch method = LatentSearch::optimise;
+  LatentInitial initial = LatentInitial::window;
+  double smoothness = 1;
+  bool dynamics = true;
+  int iterations = 15;
+
+  Out operator()(const Ssgpdm& model, const Track& audio, const SegmentTrack& segments, Context& context) const;
+};
+void describe(Description<SynthesiseSsgpdm>& d);
+
+}  // namespace talkgraph

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "graph/value.h"
+
+namespace talkgraph {
+
+/// k(a, b) = variance · exp(−inverse_width/2 · |a − b|²).
+struct RbfTerm {
+  double variance = 1;
+  double inverse_width = 1;
+};
+/// k(a, b) = variance · a·b.
+struct LinearTerm {
+  double variance = 1;
+};
+/// k(a, b) = variance.
+struct BiasTerm {
+  double variance = 1;
+};
+/// Noise: variance on the diagonal of k(X, X), nothing elsewhere; it stays above `floor`.
+struct WhiteTerm {
+  double variance = 0.1;
+  double floor = 0;
+};
+using KernelTerm = std::variant<RbfTerm, LinearTerm, BiasTerm, WhiteTerm>;
+
+/// A covariance function: the sum of its terms.
+struct Kernel {
+  std::vector<KernelTerm> terms;
+};
+void fields(Archive& ar, Kernel& k);
+
+/// What prediction needs of a trained Gaussian process, in scaled output units:
+/// mean k(x, basis)·weights, variance k(x, x) + white − k(x, basis)·reduction·k(basis, x).
+/// Both the full process and the sparse approximations take this form.
+struct GaussianProcess {
+  Kernel kernel;
+  Eigen::MatrixXd basis;      ///< K × d: training inputs, or inducing points
+  Eigen::MatrixXd weights;    ///< K × D
+  Eigen::MatrixXd reduction;  ///< K × K, symmetric
+  Eigen::RowVectorXd mean;    ///< of the outputs, 1 × D
+  Eigen::RowVectorXd scale;   ///< of the outputs, 1 × D: output = mean + scale · scaled output
+};
+void fields(Archive& ar, GaussianProcess& g);
+
+/// A shared Gaussian process dynamical model of one state (spec §4): audio and
+/// visual features are two processes of one latent trajectory. Without
+/// dynamics, for windows of one frame, it is an SGPLVM.
+struct Sgpdm {
+  std::string label;
+  Eigen::MatrixXd latents;                  ///< N × d, windows one after the other
+  std::vector<std::int64_t> lengths;        ///< of the windows; they sum to N
+  Eigen::MatrixXd audio_frames;             ///< N × D_Y, scaled: for nearest neighbours
+  GaussianProcess audio;                    ///< f: X -> Y
+  GaussianProcess visual;                   ///< g: X -> Z
+  std::optional<GaussianProcess> dynamics;  ///< h: x_{t−1} -> x_t
+  double dynamics_bias = 1;                 ///< weight of the dynamics in sequence optimisation
+  double first_variance = 1;                ///< of the Gaussian prior of a window's first latent point
+  double log_likelihood = 0;                ///< training objective reached, natural logarithm
+  std::int64_t iterations = 0;              ///< of the optimiser
+  double jitter = 0;                        ///< largest share of the mean variance added to a factorised matrix
+};
+template <>
+inline constexpr PortType port_type<Sgpdm>{"Sgpdm", 1};
+void fields(Archive& ar, Sgpdm& s);
+
+}  // namespace talkgraph
