@@ -37,18 +37,27 @@ std::string place_of(const Place& place) {
 
 }  // namespace
 
-/// Books the time from its making to its end.
-class Caller::Stopwatch {
+/// Books the time of a call, and tells observers of it.
+class Caller::Watch {
  public:
-  explicit Stopwatch(Books& books)
-      : books_(books), wall_(nanoseconds(CLOCK_MONOTONIC)), cpu_(nanoseconds(CLOCK_THREAD_CPUTIME_ID)) {}
-  ~Stopwatch() {
-    books_.wall += nanoseconds(CLOCK_MONOTONIC) - wall_;
-    books_.cpu += nanoseconds(CLOCK_THREAD_CPUTIME_ID) - cpu_;
+  Watch(Caller& caller, int node, std::string item)
+      : caller_(caller),
+        node_(node),
+        item_(std::move(item)),
+        wall_(nanoseconds(CLOCK_MONOTONIC)),
+        cpu_(nanoseconds(CLOCK_THREAD_CPUTIME_ID)) {
+    for (auto* o : caller_.options_.observers) o->call_started(node_, item_);
+  }
+  ~Watch() {
+    caller_.books(node_).wall += nanoseconds(CLOCK_MONOTONIC) - wall_;
+    caller_.books(node_).cpu += nanoseconds(CLOCK_THREAD_CPUTIME_ID) - cpu_;
+    for (auto* o : caller_.options_.observers) o->call_ended(node_, item_);
   }
 
  private:
-  Books& books_;
+  Caller& caller_;
+  int node_;
+  std::string item_;
   std::int64_t wall_, cpu_;
 };
 
@@ -152,8 +161,7 @@ std::vector<Value> Caller::call(int n, const std::string& item, std::vector<Inpu
   if (!complete(n, inputs)) {
     books(n).skipped += 1;
   } else {
-    for (auto* o : options_.observers) o->call_started(n, item);
-    const Stopwatch watch(books(n));
+    const Watch watch(*this, n, item);
     books(n).calls += 1;
     try {
       Context surroundings = context(n, item);
@@ -220,8 +228,7 @@ OpenSource::OpenSource(Caller& caller, int node, std::vector<Input> inputs)
     caller_.books(node).skipped += 1;
     return;
   }
-  for (auto* o : caller_.options_.observers) o->call_started(node, "");
-  const Caller::Stopwatch watch(caller_.books(node));
+  const Caller::Watch watch(caller_, node, "");
   try {
     stream_.emplace(caller_.node(node).functor->stream(inputs, context_, random_));
     if (const auto size = stream_->size()) caller_.domain_size(node, *size);
@@ -233,7 +240,7 @@ OpenSource::OpenSource(Caller& caller, int node, std::vector<Input> inputs)
 }
 
 std::optional<Item<std::vector<Value>>> OpenSource::pull() {
-  const Caller::Stopwatch watch(caller_.books(node_));
+  const Caller::Watch watch(caller_, node_, "");
   try {
     return stream_->next();
   } catch (const Cancelled&) {

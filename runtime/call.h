@@ -59,7 +59,7 @@ class Caller {
     std::atomic<std::uint64_t> calls{0}, skipped{0}, failed{0};
     std::atomic<std::int64_t> wall{0}, cpu{0};  // nanoseconds
   };
-  class Stopwatch;
+  class Watch;
 
   const Graph::Node& node(int n) const { return graph_.nodes[static_cast<std::size_t>(n)]; }
   Books& books(int n) { return books_[static_cast<std::size_t>(n)]; }

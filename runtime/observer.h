@@ -54,7 +54,9 @@ class RunObserver {
   virtual void started(const Graph&) {}
   /// The number of items that a source will make, or has made, is known.
   virtual void domain_size(int /*source*/, std::size_t /*items*/) {}
+  /// Around each call; a source is called to open its stream and for each item, whose key is not known then.
   virtual void call_started(int /*node*/, const std::string& /*item*/) {}
+  virtual void call_ended(int /*node*/, const std::string& /*item*/) {}
   /// The node is done with an item: called, skipped or failed. For a source: an item made.
   virtual void item_done(int /*node*/, const std::string& /*item*/) {}
   /// What a node tells through its Context.

@@ -71,13 +71,16 @@ void Progress::call_started(int node, const std::string& item) {
   state.working[item] = 0;
 }
 
-void Progress::item_done(int node, const std::string& item) {
+void Progress::call_ended(int node, const std::string& item) {
+  const std::lock_guard lock(mutex_);
+  nodes_[static_cast<std::size_t>(node)].working.erase(item);
+}
+
+void Progress::item_done(int node, const std::string&) {
   const std::lock_guard lock(mutex_);
   auto& state = nodes_[static_cast<std::size_t>(node)];
   ++state.done;
-  state.last = Clock::now();
   state.changed = true;
-  state.working.erase(item);
 }
 
 void Progress::progress(int node, const std::string& item, double share) {

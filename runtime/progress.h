@@ -28,6 +28,7 @@ class Progress final : public RunObserver {
   void started(const Graph&) override;
   void domain_size(int source, std::size_t items) override;
   void call_started(int node, const std::string& item) override;
+  void call_ended(int node, const std::string& item) override;
   void item_done(int node, const std::string& item) override;
   void progress(int node, const std::string& item, double share) override;
   void failed(const Failure&) override;
@@ -43,7 +44,7 @@ class Progress final : public RunObserver {
     bool runs_once = false;
     std::size_t done = 0;
     std::map<std::string, double> working;  ///< items in a call, with the share done
-    Clock::time_point since{}, last{};      ///< first call, last item done
+    Clock::time_point since{};              ///< first call
     bool begun = false;
     bool changed = false;  ///< since the last report
   };

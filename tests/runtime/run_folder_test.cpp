@@ -1,0 +1,91 @@
+#include "runtime/run_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runtime/executor.h"
+#include "tests/runtime/graph_builder.h"
+#include "tests/runtime/toy_nodes.h"
+
+namespace talkgraph {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class RunFolderTest : public testing::Test {
+ protected:
+  RunFolderTest() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    home_ = fs::temp_directory_path() / ("talkgraph-" + std::to_string(getpid()) + "-" + test->name());
+    fs::create_directories(home_);
+    b_.graph.name = "pipelines/lips.json";
+    b_.graph.resolved = {{"description", "lips"}};
+    b_.output("out", b_.add("track", "toy.fail_at", {b_.add("source", "toy.source")}, {{"key", "u3"}}));
+  }
+  ~RunFolderTest() override { fs::remove_all(home_); }
+  Json record() const { return Json::parse(read(home_ / "run/run.json")); }
+
+  const Registry registry_ = toy::registry();
+  GraphBuilder b_{registry_};
+  fs::path home_;
+};
+
+TEST_F(RunFolderTest, RecordsARun) {
+  RunFolder folder(b_.graph, home_ / "run");
+  EXPECT_EQ(record()["status"], "running");
+  RunOptions options;
+  options.keep_going = true;
+  options.observers = {&folder};
+  run(b_.graph, options);
+  const auto json = record();
+  EXPECT_EQ(json["status"], "finished");
+  EXPECT_EQ(json["graph"], "pipelines/lips.json");
+  EXPECT_GT(json["peak_memory_bytes"], 1'000'000);
+  EXPECT_EQ(json["failures"][0]["item"], "u3");
+  EXPECT_EQ(json["nodes"][1]["name"], "track");
+  EXPECT_EQ(json["nodes"][1]["calls"], 10);
+  EXPECT_EQ(Json::parse(read(home_ / "run/graph.resolved.json")), b_.graph.resolved);
+  EXPECT_THAT(read(home_ / "run/log.txt"), HasSubstr("item \"u3\": the picture is black"));
+  for (const auto& entry : fs::directory_iterator(home_ / "run"))
+    EXPECT_EQ(entry.path().string().find(".part"), std::string::npos);
+}
+
+TEST_F(RunFolderTest, RecordsAFailureAndACancellation) {
+  RunFolder folder(b_.graph, home_ / "run");
+  RunOptions options;
+  options.observers = {&folder};
+  EXPECT_THROW(run(b_.graph, options), RunError);
+  EXPECT_EQ(record()["status"], "failed");
+  EXPECT_THAT(record()["error"], HasSubstr("node \"track\""));
+  const std::atomic<bool> cancel{true};
+  options.cancel = &cancel;
+  EXPECT_THROW(run(b_.graph, options), Cancelled);
+  EXPECT_EQ(record()["status"], "cancelled");
+}
+
+TEST_F(RunFolderTest, NamesItselfAfterGraphAndTime) {
+  const auto before = fs::current_path();
+  fs::current_path(home_);
+  const RunFolder one(b_.graph), two(b_.graph);
+  fs::current_path(before);
+  EXPECT_THAT(one.path().string(), testing::MatchesRegex("runs/lips-[0-9]+T[0-9]+Z"));
+  EXPECT_NE(one.path(), two.path());
+}
+
+TEST_F(RunFolderTest, SaysWhatCannotBeWritten) {
+  try {
+    RunFolder folder(b_.graph, "/proc/none/run");
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("the run folder /proc/none/run cannot be used"));
+  }
+}
+
+}  // namespace
+}  // namespace talkgraph
