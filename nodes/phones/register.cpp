@@ -1,0 +1,24 @@
+#include "nodes/phones/register.h"
+
+#include "nodes/phones/align.h"
+#include "nodes/phones/label_frames.h"
+#include "nodes/phones/masks.h"
+#include "nodes/phones/recognise.h"
+#include "nodes/phones/visemes.h"
+#include "nodes/phones/write_labels.h"
+#include "nodes/phones/write_visemes.h"
+
+namespace talkgraph {
+
+void register_phones(Registry& registry) {
+  registry.add<Align>();
+  registry.add<Recognise>();
+  registry.add<LabelFrames>();
+  registry.add<SpeechMask>();
+  registry.add<WordMask>();
+  registry.add<ToVisemes>();
+  registry.add<WriteVisemes>();
+  registry.add<WriteLabels>();
+}
+
+}  // namespace talkgraph

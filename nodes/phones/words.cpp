@@ -1,0 +1,160 @@
+#include "nodes/phones/words.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+
+namespace talkgraph {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr std::array kSmall = {"zero",     "one",     "two",     "three",     "four",     "five",    "six",
+                               "seven",    "eight",   "nine",    "ten",       "eleven",   "twelve",  "thirteen",
+                               "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen"};
+constexpr std::array kTens = {"", "", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"};
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80; }
+
+void append(Words& words, const Words& more) { words.insert(words.end(), more.begin(), more.end()); }
+
+Words cardinal(std::uint64_t n) {
+  if (n < 20) return {kSmall[n]};
+  Words words;
+  const auto rest = [&](std::uint64_t r) {
+    if (r) append(words, cardinal(r));
+  };
+  if (n < 100) {
+    words = {kTens[n / 10]};
+    rest(n % 10);
+    return words;
+  }
+  constexpr std::pair<std::uint64_t, const char*> kScales[] = {
+      {1'000'000'000, "billion"}, {1'000'000, "million"}, {1'000, "thousand"}, {100, "hundred"}};
+  for (const auto& [scale, name] : kScales)
+    if (n >= scale) {
+      words = cardinal(n / scale);
+      words.emplace_back(name);
+      rest(n % scale);
+      return words;
+    }
+  return words;
+}
+
+Words digits(std::string_view number) {
+  Words words;
+  for (const char c : number) words.emplace_back(kSmall[c - '0']);
+  return words;
+}
+
+/// 1984 and 2015 are read in two halves.
+bool reads_as_year(std::string_view number, std::uint64_t n) {
+  return number.size() == 4 && ((n >= 1100 && n < 2000) || (n >= 2010 && n < 2100)) && n % 100 != 0;
+}
+
+Words whole_number(std::string_view number, bool plain) {
+  if (number.size() > 12 || (number.size() > 1 && number[0] == '0')) return digits(number);
+  const std::uint64_t n = std::stoull(std::string(number));
+  if (!plain || !reads_as_year(number, n)) return cardinal(n);
+  Words words = cardinal(n / 100);
+  if (n % 100 < 10) words.emplace_back("oh");
+  append(words, cardinal(n % 100));
+  return words;
+}
+
+Words ordinal(Words words) {
+  static const std::map<std::string, std::string> irregular = {
+      {"one", "first"},    {"two", "second"}, {"three", "third"},   {"five", "fifth"},
+      {"eight", "eighth"}, {"nine", "ninth"}, {"twelve", "twelfth"}};
+  std::string& last = words.back();
+  if (const auto found = irregular.find(last); found != irregular.end())
+    last = found->second;
+  else if (last.back() == 'y')
+    last.replace(last.size() - 1, 1, "ieth");
+  else
+    last += "th";
+  return words;
+}
+
+/// Takes a number from the start of the text: 1,000 · 3.5 · 2nd.
+Words take_number(std::string_view& text) {
+  std::string number;
+  bool plain = true;
+  std::size_t at = 0;
+  const auto digit_at = [&](std::size_t i) { return i < text.size() && is_digit(text[i]); };
+  for (; at < text.size(); ++at) {
+    if (is_digit(text[at])) {
+      number += text[at];
+    } else if (text[at] == ',' && digit_at(at + 1) && digit_at(at + 2) && digit_at(at + 3) && !digit_at(at + 4)) {
+      plain = false;
+    } else {
+      break;
+    }
+  }
+  std::string_view decimals;
+  if (at < text.size() && text[at] == '.' && digit_at(at + 1)) {
+    std::size_t end = at + 1;
+    while (digit_at(end)) ++end;
+    decimals = text.substr(at + 1, end - at - 1);
+    at = end;
+  }
+  text.remove_prefix(at);
+  if (!decimals.empty()) {
+    Words words = whole_number(number, false);
+    words.emplace_back("point");
+    append(words, digits(decimals));
+    return words;
+  }
+  for (const std::string_view suffix : {"st", "nd", "rd", "th"})
+    if (text.starts_with(suffix) && (text.size() == 2 || !is_letter(text[2]))) {
+      text.remove_prefix(2);
+      return ordinal(whole_number(number, false));
+    }
+  return whole_number(number, plain);
+}
+
+std::string lower_with_plain_apostrophes(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text.substr(i).starts_with("\u2019")) {
+      plain += '\'';
+      i += 2;
+    } else if (text.substr(i).starts_with("\u2018") || text.substr(i).starts_with("\u201c") ||
+               text.substr(i).starts_with("\u201d") || text.substr(i).starts_with("\u2013") ||
+               text.substr(i).starts_with("\u2014") || text.substr(i).starts_with("\u2026")) {
+      plain += ' ';
+      i += 2;
+    } else {
+      plain += text[i] >= 'A' && text[i] <= 'Z' ? static_cast<char>(text[i] - 'A' + 'a') : text[i];
+    }
+  }
+  return plain;
+}
+
+}  // namespace
+
+Words spoken_words(std::string_view text) {
+  const std::string plain = lower_with_plain_apostrophes(text);
+  std::string_view rest = plain;
+  Words words;
+  while (!rest.empty()) {
+    if (is_digit(rest[0])) {
+      append(words, take_number(rest));
+    } else if (is_letter(rest[0])) {
+      std::size_t end = 1;
+      while (end < rest.size() && (is_letter(rest[end]) || rest[end] == '\'')) ++end;
+      std::string word(rest.substr(0, end));
+      rest.remove_prefix(end);
+      while (word.back() == '\'') word.pop_back();
+      words.push_back(std::move(word));
+    } else {
+      if (rest[0] == '%') words.emplace_back("percent");
+      if (rest[0] == '&') words.emplace_back("and");
+      rest.remove_prefix(1);
+    }
+  }
+  return words;
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,27 @@
+#include "nodes/phones/write_labels.h"
+
+#include "nodes/phones/label_files.h"
+#include "nodes/phones/text_file.h"
+
+namespace talkgraph {
+
+Artifact WriteLabels::operator()(const PhoneTrack& phones, const WordTrack* words, Context& context) const {
+  const std::string name = context.item.empty() ? "phones" : context.item;
+  const auto write = [&](const char* extension, const std::string& text) {
+    return write_text(context.folder, folder + "/" + name + extension, text, "phones of " + name);
+  };
+  if (format == LabelFormat::htk) return write(".lab", htk_labels(phones.phones));
+  if (format == LabelFormat::csv) return write(".csv", csv_labels(phones.phones));
+  std::vector<LabelTier> tiers = {{"phones", phones.phones}};
+  if (words) tiers.push_back({"words", words->words});
+  return write(".TextGrid", text_grid(tiers));
+}
+
+void describe(Description<WriteLabels>& d) {
+  d.type("phones.write_labels").summary("writes phones as HTK labels, Praat TextGrid or CSV").sink();
+  d.input("phones").input("words", "a second tier of the TextGrid").output("file");
+  d.param("format", &WriteLabels::format);
+  d.param("folder", &WriteLabels::folder).doc("below the run folder");
+}
+
+}  // namespace talkgraph

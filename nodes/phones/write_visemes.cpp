@@ -1,0 +1,52 @@
+#include "nodes/phones/write_visemes.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/phones/mouth_shapes.h"
+#include "nodes/phones/text_file.h"
+
+namespace talkgraph {
+namespace {
+
+double duration(const PhoneTrack& phones) { return phones.phones.empty() ? 0 : phones.phones.back().end; }
+
+std::string tsv(const std::vector<Interval>& shapes, double end) {
+  std::string text;
+  for (const auto& shape : shapes) text += fmt::format("{:.2f}\t{}\n", shape.start, shape.label);
+  return text + fmt::format("{:.2f}\tX\n", end);
+}
+
+std::string json(const std::vector<Interval>& shapes, double end, const std::string& sound_file) {
+  std::string cues;
+  for (const auto& shape : shapes)
+    cues += fmt::format("{}    {{ \"start\": {:.2f}, \"end\": {:.2f}, \"value\": \"{}\" }}", cues.empty() ? "" : ",\n",
+                        shape.start, shape.end, shape.label);
+  return fmt::format(
+      "{{\n  \"metadata\": {{\n    \"soundFile\": {},\n    \"duration\": {:.2f}\n  }},\n  \"mouthCues\": [\n{}\n  "
+      "]\n}}\n",
+      nlohmann::json(sound_file).dump(), end, cues);
+}
+
+}  // namespace
+
+std::string viseme_text(const PhoneTrack& phones, VisemeFormat format, const std::string& sound_file) {
+  const auto shapes = mouth_shapes(phones);
+  return format == VisemeFormat::tsv ? tsv(shapes, duration(phones)) : json(shapes, duration(phones), sound_file);
+}
+
+Artifact WriteVisemes::operator()(const PhoneTrack& phones, Context& context) const {
+  const std::string name = context.item.empty() ? "visemes" : context.item;
+  return write_text(context.folder, folder + "/" + name + (format == VisemeFormat::tsv ? ".tsv" : ".json"),
+                    viseme_text(phones, format, name), "mouth shapes of " + name);
+}
+
+void describe(Description<WriteVisemes>& d) {
+  d.type("phones.write_visemes").summary("writes mouth shapes in the formats of Rhubarb Lip Sync").sink();
+  d.input("phones").output("file");
+  d.param("format", &WriteVisemes::format);
+  d.param("folder", &WriteVisemes::folder).doc("below the run folder");
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,95 @@
+#include "nodes/phones/visemes.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "nodes/phones/mouth_shapes.h"
+#include "nodes/phones/write_visemes.h"
+
+namespace talkgraph {
+namespace {
+
+TEST(Visemes, CoverCmuAndBeepInFourteenClasses) {
+  std::set<int> classes;
+  std::set<std::string_view> phones;
+  for (const auto& entry : kVisemes) {
+    classes.insert(entry.viseme);
+    EXPECT_TRUE(phones.insert(entry.phone).second) << entry.phone;
+  }
+  EXPECT_EQ(classes.size(), 14u);
+  EXPECT_EQ(phones.size(), 44u);  // the BEEP set, which contains the 39 of CMU
+  EXPECT_EQ(viseme("p"), viseme("m"));
+  EXPECT_EQ(viseme("ua"), 14);
+  EXPECT_EQ(viseme("sil"), 0);
+  EXPECT_THROW(viseme("AA"), std::runtime_error);
+}
+
+TEST(ToVisemes, KeepsTimes) {
+  const auto visemes = ToVisemes{}({{{"sil", 0, 0.1}, {"m", 0.1, 0.2}}}).phones;
+  EXPECT_EQ(visemes[0].label, "sil");
+  EXPECT_EQ(visemes[1].label, "1");
+  EXPECT_EQ(visemes[1].start, 0.1);
+}
+
+std::string shapes(const PhoneTrack& phones) {
+  std::string text;
+  for (const auto& cue : mouth_shapes(phones)) text += std::to_string(std::lround(cue.start * 100)) + cue.label + " ";
+  return text;
+}
+
+TEST(MouthShapes, EveryPhoneHasOne) {
+  for (const auto& entry : kVisemes)
+    EXPECT_EQ(mouth_shapes({{{std::string(entry.phone), 0, 0.4}}}).back().end, 0.4) << entry.phone;
+  EXPECT_THROW(mouth_shapes({{{"qq", 0, 0.4}}}), std::runtime_error);
+  EXPECT_TRUE(mouth_shapes({}).empty());
+}
+
+TEST(MouthShapes, StopsCloseBeforeTheirBurst) {
+  // Half of the 200 ms vowel before the "p"; what follows is free and stays closed.
+  EXPECT_EQ(shapes({{{"sil", 0, 0.5}, {"aa", 0.5, 0.7}, {"p", 0.7, 0.76}, {"iy", 0.76, 0.9}}}), "0X 50D 60A 76B ");
+}
+
+TEST(MouthShapes, DiphthongsGlideAfterSixtyPercent) { EXPECT_EQ(shapes({{{"ow", 0, 0.5}}}), "0E 30F "); }
+
+TEST(MouthShapes, BriefVowelsOpenLess) {
+  EXPECT_EQ(shapes({{{"ah", 0, 0.1}}}), "0C ");
+  EXPECT_EQ(shapes({{{"ah", 0, 0.3}}}), "0D ");
+}
+
+TEST(MouthShapes, FreePhonesStayNearTheShapeBefore) {
+  EXPECT_EQ(shapes({{{"uw", 0, 0.2}, {"s", 0.2, 0.3}}}), "0F ");
+  EXPECT_EQ(shapes({{{"iy", 0, 0.2}, {"s", 0.2, 0.3}}}), "0B ");
+}
+
+TEST(MouthShapes, ShortPausesAreNotIdle) {
+  EXPECT_EQ(shapes({{{"aa", 0, 0.2}, {"sil", 0.2, 0.3}, {"aa", 0.3, 0.5}}}), "0D 20B 30D ");
+  EXPECT_EQ(shapes({{{"aa", 0, 0.2}, {"sil", 0.2, 0.6}, {"aa", 0.6, 0.8}}}), "0D 20X 60D ");
+}
+
+TEST(VisemeText, IsWhatRhubarbWrites) {
+  const PhoneTrack phones{{{"sil", 0, 0.5}, {"aa", 0.5, 0.7}}};
+  EXPECT_EQ(viseme_text(phones, VisemeFormat::tsv, "a"), "0.00\tX\n0.50\tD\n0.70\tX\n");
+  const auto json = nlohmann::json::parse(viseme_text(phones, VisemeFormat::json, "a \"b\".wav"));
+  EXPECT_EQ(json["metadata"]["soundFile"], "a \"b\".wav");
+  EXPECT_EQ(json["metadata"]["duration"], 0.7);
+  ASSERT_EQ(json["mouthCues"].size(), 2u);
+  EXPECT_EQ(json["mouthCues"][1]["start"], 0.5);
+  EXPECT_EQ(json["mouthCues"][1]["end"], 0.7);
+  EXPECT_EQ(json["mouthCues"][1]["value"], "D");
+  EXPECT_EQ(viseme_text({}, VisemeFormat::tsv, ""), "0.00\tX\n");
+  EXPECT_TRUE(nlohmann::json::parse(viseme_text({}, VisemeFormat::json, ""))["mouthCues"].empty());
+}
+
+TEST(WriteVisemes, NamesTheFileForTheItem) {
+  Context context;
+  context.folder = testing::TempDir() + "phones_write_visemes";
+  context.item = "clip1";
+  EXPECT_EQ((WriteVisemes{VisemeFormat::json, "out"}({{{"m", 0, 1}}}, context).path), "out/clip1.json");
+  EXPECT_TRUE(std::filesystem::exists(context.folder / "out/clip1.json"));
+  std::filesystem::remove_all(context.folder);
+}
+
+}  // namespace
+}  // namespace talkgraph

@@ -1,0 +1,47 @@
+#include "nodes/phones/words.h"
+
+#include <gtest/gtest.h>
+
+namespace talkgraph {
+namespace {
+
+std::string said(std::string_view text) {
+  std::string joined;
+  for (const auto& word : spoken_words(text)) joined += (joined.empty() ? "" : " ") + word;
+  return joined;
+}
+
+TEST(SpokenWords, DropPunctuationAndCase) {
+  EXPECT_EQ(said("Well-known, isn't it? \"Yes\" \xe2\x80\x94 it\xe2\x80\x99s the dogs'."),
+            "well known isn't it yes it's the dogs");
+  EXPECT_EQ(said(""), "");
+  EXPECT_EQ(said(" \n\t .,;"), "");
+}
+
+TEST(SpokenWords, SpellOutNumbers) {
+  EXPECT_EQ(said("2"), "two");
+  EXPECT_EQ(said("25"), "twenty five");
+  EXPECT_EQ(said("0"), "zero");
+  EXPECT_EQ(said("110"), "one hundred ten");
+  EXPECT_EQ(said("1,000,001"), "one million one");
+  EXPECT_EQ(said("3.14"), "three point one four");
+  EXPECT_EQ(said("007"), "zero zero seven");
+  EXPECT_EQ(said("bin at f2 now"), "bin at f two now");
+  EXPECT_EQ(said("40% & more"), "forty percent and more");
+}
+
+TEST(SpokenWords, ReadYearsInHalves) {
+  EXPECT_EQ(said("1984"), "nineteen eighty four");
+  EXPECT_EQ(said("1905"), "nineteen oh five");
+  EXPECT_EQ(said("2000"), "two thousand");
+  EXPECT_EQ(said("2015"), "twenty fifteen");
+  EXPECT_EQ(said("1,984"), "one thousand nine hundred eighty four");
+}
+
+TEST(SpokenWords, SpellOutOrdinals) {
+  EXPECT_EQ(said("1st 2nd 3rd 5th 12th 20th 21st 100th"),
+            "first second third fifth twelfth twentieth twenty first one hundredth");
+}
+
+}  // namespace
+}  // namespace talkgraph
