@@ -1,0 +1,21 @@
+#include "nodes/face/base_clip.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace talkgraph {
+
+BaseClip MakeBaseClip::operator()(const Video& video, const FaceTrack& track) const {
+  if (video.source->frames() != static_cast<std::int64_t>(track.shapes.size()))
+    throw std::runtime_error(fmt::format("{} has {} frames, its face track has {}", video.source->name(),
+                                         video.source->frames(), track.shapes.size()));
+  return {video, track};
+}
+
+void describe(Description<MakeBaseClip>& d) {
+  d.type("face.base_clip").version(1).summary("a tracked clip as the base to draw a face upon").source("spec §2");
+  d.input("video").input("track").output("base");
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "graph/context.h"
+#include "graph/description.h"
+#include "nodes/types/appearance_model.h"
+#include "nodes/types/prototypes.h"
+
+namespace talkgraph {
+
+/// Active appearance model of the prototypes: Procrustes alignment, Delaunay
+/// triangles, colour texture warped to the mean shape, PCA of shapes, of
+/// textures and of both, and the matrices that fitting uses (spec §2, Eqns
+/// 3.11-3.21). Throws std::runtime_error on no prototypes, point counts that
+/// differ, a landmark that is not a number, or a flat picture. A single
+/// prototype gives a rigid model without modes.
+struct BuildAppearance {
+  double width = 120;  ///< of the mean shape, pixels; never more than the prototypes' own
+  double retain_shape = 0.99;
+  double retain_texture = 0.99;
+  double retain_combined = 0.99;
+  int levels = 2;  ///< of the fitting pyramid
+
+  AppearanceModel operator()(const Prototypes& prototypes, Context& context) const;
+};
+void describe(Description<BuildAppearance>& d);
+
+}  // namespace talkgraph

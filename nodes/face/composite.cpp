@@ -1,0 +1,286 @@
+#include "nodes/face/composite.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+#include "nodes/face/draw.h"
+#include "nodes/face/geometry.h"
+#include "nodes/face/sampling.h"
+#include "nodes/face/shapes.h"
+
+namespace talkgraph {
+namespace {
+
+constexpr int ring_points = 24;
+constexpr double ring_size = 1.45;  ///< of the half extent: where the bent surroundings end
+
+/// The mean shape and a ring around it that stays in place.
+Shape with_ring(const Shape& shape, const Shape& ring) {
+  Shape all(shape.rows() + ring.rows(), 2);
+  all << shape, ring;
+  return all;
+}
+
+Shape ring_around(const Shape& shape) {
+  const Eigen::RowVector2d low = shape.colwise().minCoeff(), high = shape.colwise().maxCoeff();
+  Shape ring(ring_points, 2);
+  for (int i = 0; i < ring_points; ++i) {
+    const double angle = 2 * std::numbers::pi * i / ring_points;
+    // A superellipse: it clears the corners of a square jaw.
+    const auto root = [](double v) { return std::copysign(std::sqrt(std::abs(v)), v); };
+    ring.row(i) =
+        0.5 * (low + high) +
+        0.5 * ring_size * (high - low).cwiseProduct(Eigen::RowVector2d(root(std::cos(angle)), root(std::sin(angle))));
+  }
+  return ring;
+}
+
+/// Everything about a model and its blending that does not change from frame to frame.
+class Painter {
+ public:
+  Painter(const CompositeFace& settings, AppearanceModel model)
+      : whole_(settings.part == FacePart::whole), model_(std::move(model)), raster_(model_.levels.at(0).raster) {
+    ring_ = ring_around(model_.mean_shape);
+    mesh_ = delaunay(with_ring(model_.mean_shape, ring_));
+    const double top = raster_.points.col(1).minCoeff(), height = raster_.points.col(1).maxCoeff() - top;
+    const auto share_below = [&](double y) {
+      return whole_ ? 1.0 : smooth_step(settings.blend_from, settings.blend_to, (y - top) / height);
+    };
+    moves_.resize(model_.points());
+    for (Eigen::Index i = 0; i < moves_.size(); ++i) moves_(i) = share_below(raster_.points(i, 1));
+    make_masks(share_below, settings.feather * (raster_.width - 3));
+  }
+
+  cv::Mat paint(const cv::Mat& frame, const FaceTrack& track, std::size_t t, const Eigen::VectorXd& c) const {
+    const Eigen::VectorXd own = track.parameters.values.row(static_cast<Eigen::Index>(t));
+    const Pose& pose = track.poses[t];
+    const Shape before = model_.shape(own), after = moved(before, model_.shape(c));
+    const Shape ring = transform(pose, ring_);
+    const Shape from = transform(pose, before), to = transform(pose, after);
+
+    cv::Mat map = identity_map(frame.size()), bent;
+    draw_map(map, with_ring(to, ring), with_ring(from, ring), mesh_);
+    cv::remap(frame, bent, map, cv::noArray(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    bent.convertTo(bent, CV_32FC3);
+
+    cv::Mat face_map = empty_map(frame.size());
+    draw_map(face_map, to, raster_.points, model_.triangles);
+    blend(bent, face_map, track.gain[t], track.offset[t], own, c);
+    bent.convertTo(bent, CV_8UC3);
+    return bent;
+  }
+
+  const AppearanceModel& model() const { return model_; }
+
+ private:
+  template <class Share>
+  void make_masks(const Share& share_below, double feather) {
+    cv::Mat inside(raster_.height, raster_.width, CV_8U, cv::Scalar(0)), distance;
+    for (std::size_t i = 0; i < raster_.x.size(); ++i) inside.at<unsigned char>(raster_.y[i], raster_.x[i]) = 255;
+    cv::distanceTransform(inside, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+    const cv::Mat replaced = replaced_share();
+    keep_ = cv::Mat(inside.size(), CV_32F, cv::Scalar(0));
+    replace_ = keep_.clone();
+    for (std::size_t i = 0; i < raster_.x.size(); ++i) {
+      const cv::Point at(raster_.x[i], raster_.y[i]);
+      const auto mask = static_cast<float>(share_below(at.y) * smooth_step(0, feather, distance.at<float>(at) - 0.5));
+      replace_.at<float>(at) = mask * replaced.at<float>(at);
+      keep_.at<float>(at) = mask - replace_.at<float>(at);
+    }
+  }
+
+  /// 1 where the texture varies far more than over the rest of the face (the
+  /// inner mouth, the eyes): there the base's own detail does not belong.
+  cv::Mat replaced_share() const {
+    Eigen::VectorXf variance =
+        model_.levels[0].appearance->array().square().matrix() * model_.combined_variances.cast<float>();
+    Eigen::VectorXf deviation(variance.size());
+    for (Eigen::Index i = 0; i < variance.size(); i += 3)
+      deviation.segment<3>(i).setConstant(std::sqrt(variance.segment<3>(i).mean()));
+    cv::Mat picture = raster_picture(raster_, deviation);
+    cv::GaussianBlur(picture, picture, {}, 0.01 * raster_.width);
+    std::vector<float> sorted;
+    for (std::size_t i = 0; i < raster_.x.size(); ++i) sorted.push_back(deviation(static_cast<Eigen::Index>(3 * i)));
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    const double usual = sorted[sorted.size() / 2];
+    cv::Mat share(picture.size(), CV_32F, cv::Scalar(0));
+    for (int y = 0; y < share.rows; ++y)
+      for (int x = 0; x < share.cols; ++x)
+        share.at<float>(y, x) =
+            static_cast<float>(smooth_step(1.5 * usual, 3.5 * usual, picture.at<cv::Vec3f>(y, x)[0]));
+    return share;
+  }
+
+  /// The base's shape with the synthesised one in the moving part, both model
+  /// frame. The parts that stay are laid upon each other first: an opening jaw
+  /// shifts the Procrustes frame.
+  Shape moved(const Shape& before, const Shape& wanted) const {
+    if (whole_) return wanted;
+    const Eigen::VectorXd stays = (1 - moves_.array()).max(1e-6);
+    const Shape change = transform(align(wanted, before, stays), wanted) - before;
+    return before + moves_.asDiagonal() * change;
+  }
+
+  void blend(cv::Mat& bent, const cv::Mat& face_map, double gain, double offset, const Eigen::VectorXd& own,
+             const Eigen::VectorXd& c) const {
+    const auto g = static_cast<float>(gain);
+    const Eigen::VectorXf wanted = model_.texture(c);
+    const Eigen::VectorXf change = g * (wanted - model_.texture(own));
+    const Eigen::VectorXf colour = (g * wanted).array() + static_cast<float>(offset);
+    cv::Mat added = raster_picture(raster_, change), painted = raster_picture(raster_, colour, cv::Scalar::all(offset));
+    cv::Mat keep, replace;
+    cv::remap(added, added, face_map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    cv::remap(painted, painted, face_map, cv::noArray(), cv::INTER_CUBIC, cv::BORDER_CONSTANT);
+    cv::remap(keep_, keep, face_map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    cv::remap(replace_, replace, face_map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    for (int y = 0; y < bent.rows; ++y)
+      for (int x = 0; x < bent.cols; ++x) {
+        auto& pixel = bent.at<cv::Vec3f>(y, x);
+        const float k = keep.at<float>(y, x), r = replace.at<float>(y, x);
+        if (k > 0 || r > 0) pixel += k * added.at<cv::Vec3f>(y, x) + r * (painted.at<cv::Vec3f>(y, x) - pixel);
+      }
+  }
+
+  bool whole_;
+  AppearanceModel model_;
+  const Raster& raster_;
+  Shape ring_;
+  Triangles mesh_;
+  Eigen::VectorXd moves_;   ///< per landmark: 1 follows the parameters, 0 stays
+  cv::Mat keep_, replace_;  ///< raster: shares of adding to, and of replacing, the base picture
+};
+
+struct Run {
+  std::int64_t first = 0, length = 0;
+};
+
+Run longest_good_run(const FaceTrack& track) {
+  Run best, now;
+  for (std::size_t t = 0; t < track.lost.size(); ++t) {
+    now = track.lost[t] ? Run{static_cast<std::int64_t>(t) + 1, 0} : Run{now.first, now.length + 1};
+    if (now.length > best.length) best = now;
+  }
+  return best;
+}
+
+/// 0, 1 ... n-1, n-2 ... 1, 0, 1 ...
+std::int64_t back_and_forth(std::int64_t i, std::int64_t n) {
+  if (n == 1) return 0;
+  const auto at = i % (2 * n - 2);
+  return at < n ? at : 2 * n - 2 - at;
+}
+
+struct Plan {
+  Plan(const CompositeFace& settings, const AppearanceModel& model) : painter(settings, model) {}
+  Painter painter;
+  Track parameters;
+  BaseClip base;
+  Run run;
+  std::string settings;
+
+  std::int64_t base_frame(std::int64_t t) const {
+    const double seconds = (static_cast<double>(t) + 0.5) / parameters.rate.value();
+    const auto i = static_cast<std::int64_t>(seconds * base.frames.source->rate().value());
+    return run.first + back_and_forth(i, run.length);
+  }
+};
+
+class CompositeReader final : public VideoSource::Reader {
+ public:
+  explicit CompositeReader(std::shared_ptr<const Plan> plan)
+      : plan_(std::move(plan)), base_(plan_->base.frames.source->open()) {}
+
+  bool next(cv::Mat& frame) override {
+    if (at_ == plan_->parameters.frames()) return false;
+    const auto t = plan_->base_frame(at_);
+    frame = plan_->painter.paint(picture(t), plan_->base.track, static_cast<std::size_t>(t),
+                                 plan_->parameters.values.row(at_));
+    ++at_;
+    return true;
+  }
+
+ private:
+  /// Frames stay in memory, as the base may run backwards later on.
+  const cv::Mat& picture(std::int64_t t) {
+    while (static_cast<std::int64_t>(frames_.size()) <= t) {
+      cv::Mat frame;
+      if (!base_->next(frame))
+        throw std::runtime_error(plan_->base.frames.source->name() + " ends before frame " + std::to_string(t));
+      frames_.push_back(frame.clone());
+    }
+    return frames_[static_cast<std::size_t>(t)];
+  }
+
+  std::shared_ptr<const Plan> plan_;
+  std::unique_ptr<VideoSource::Reader> base_;
+  std::vector<cv::Mat> frames_;
+  std::int64_t at_ = 0;
+};
+
+class CompositeSource final : public VideoSource {
+ public:
+  explicit CompositeSource(std::shared_ptr<const Plan> plan) : plan_(std::move(plan)) {}
+  Rational rate() const override { return plan_->parameters.rate; }
+  std::int64_t frames() const override { return plan_->parameters.frames(); }
+  cv::Size size() const override { return plan_->base.frames.source->size(); }
+  std::unique_ptr<Reader> open() const override { return std::make_unique<CompositeReader>(plan_); }
+  std::string name() const override { return "face drawn on " + plan_->base.frames.source->name(); }
+  std::string content_key() const override {
+    return content_hash([&](Archive& ar) {
+      auto model = plan_->painter.model();
+      auto parameters = plan_->parameters;
+      auto track = plan_->base.track;
+      auto base = plan_->base.frames.source->content_key();
+      auto settings = plan_->settings;
+      ar("model", model);
+      ar("parameters", parameters);
+      ar("track", track);
+      ar("base", base);
+      ar("settings", settings);
+    });
+  }
+
+ private:
+  std::shared_ptr<const Plan> plan_;
+};
+
+}  // namespace
+
+Video CompositeFace::operator()(const AppearanceModel& model, const Track& parameters, const BaseClip& base) const {
+  check_dimension(model, parameters);
+  check_dimension(model, base.track.parameters);
+  if (!parameters.values.allFinite())
+    throw std::runtime_error("the appearance parameters hold a value that is not a number");
+  if (blend_from > blend_to) throw std::invalid_argument("blend_from must not exceed blend_to");
+  auto plan = std::make_shared<Plan>(*this, model);
+  plan->parameters = parameters;
+  plan->base = base;
+  plan->run = longest_good_run(base.track);
+  plan->settings = std::to_string(static_cast<int>(part)) + " " + std::to_string(blend_from) + " " +
+                   std::to_string(blend_to) + " " + std::to_string(feather);
+  if (plan->run.length == 0)
+    throw std::runtime_error(base.frames.source->name() + ": no frame with a tracked face to draw upon");
+  return {std::make_shared<CompositeSource>(std::move(plan)), {}};
+}
+
+void describe(Description<CompositeFace>& d) {
+  d.type("face.composite").version(1).summary("draws a synthesised face on the frames of a real clip");
+  d.source("Thesis §3.1.3, §6.3.5; spec §2");
+  d.input("model").input("parameters", "appearance parameters c").input("base").output("video");
+  d.param("part", &CompositeFace::part)
+      .doc("what the parameters rule: the lower face, or all of it with eyes and brows");
+  d.param("blend_from", &CompositeFace::blend_from)
+      .within(0, 1)
+      .doc("share of the face's height above which the base stays");
+  d.param("blend_to", &CompositeFace::blend_to)
+      .within(0, 1)
+      .doc("share of the face's height below which the parameters rule");
+  d.param("feather", &CompositeFace::feather)
+      .within(0, 0.5)
+      .doc("width of the blend at the face's edge, share of its width");
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,35 @@
+#include "nodes/face/register.h"
+
+#include "nodes/face/base_clip.h"
+#include "nodes/face/build.h"
+#include "nodes/face/choose_base.h"
+#include "nodes/face/composite.h"
+#include "nodes/face/landmarks.h"
+#include "nodes/face/modes.h"
+#include "nodes/face/parameters.h"
+#include "nodes/face/prototypes.h"
+#include "nodes/face/render.h"
+#include "nodes/face/shapes.h"
+#include "nodes/face/side_by_side.h"
+#include "nodes/face/strip.h"
+#include "nodes/face/track.h"
+
+namespace talkgraph {
+
+void register_face(Registry& registry) {
+  registry.add<ChoosePrototypes>();
+  registry.add<BuildAppearance>();
+  registry.add<TrackFace>();
+  registry.add<FaceParameters>();
+  registry.add<FaceLandmarks>();
+  registry.add<FaceShapes>();
+  registry.add<MakeBaseClip>();
+  registry.add<ChooseBase>();
+  registry.add<CompositeFace>();
+  registry.add<RenderFace>();
+  registry.add<SideBySide>();
+  registry.add<FrameStrip>();
+  registry.add<FaceModes>();
+}
+
+}  // namespace talkgraph

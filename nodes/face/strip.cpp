@@ -1,0 +1,77 @@
+#include "nodes/face/strip.h"
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
+
+namespace talkgraph {
+namespace {
+
+constexpr int bar_height = 18;
+
+cv::Mat tile(const cv::Mat& frame, int width, const std::string& text) {
+  const int height = std::max(1, frame.rows * width / frame.cols);
+  cv::Mat out(height + bar_height, width, CV_8UC3, cv::Scalar::all(255));
+  cv::Mat scaled;
+  cv::resize(frame, scaled, {width, height}, 0, 0, cv::INTER_AREA);
+  scaled.copyTo(out(cv::Rect(0, 0, width, height)));
+  cv::putText(out, text, {4, height + bar_height - 5}, cv::FONT_HERSHEY_SIMPLEX, 0.42, {}, 1, cv::LINE_AA);
+  return out;
+}
+
+}  // namespace
+
+Artifact write_png(const Context& context, const std::string& folder, const std::string& name, const std::string& title,
+                   const cv::Mat& picture) {
+  const auto relative = std::filesystem::path(folder) / (name + ".png");
+  const auto path = context.folder / relative;
+  std::error_code ignored;
+  std::filesystem::create_directories(path.parent_path(), ignored);
+  bool written = false;
+  try {
+    written = cv::imwrite(path.string(), picture);
+  } catch (const cv::Exception&) {
+  }
+  if (!written)
+    throw std::runtime_error(path.string() +
+                             ": the picture cannot be written; is there room, and may one write there?");
+  return {relative.string(), title};
+}
+
+Artifact FrameStrip::operator()(const Video& video, const FrameLabels* labels, Context& context) const {
+  std::vector<cv::Mat> tiles;
+  const auto reader = video.source->open();
+  cv::Mat frame;
+  for (std::size_t t = 0; reader->next(frame); ++t) {
+    if (t % static_cast<std::size_t>(every)) continue;
+    std::string text = std::to_string(t);
+    if (labels && t < labels->labels.size()) text += "  " + labels->labels[t];
+    tiles.push_back(tile(frame, width, text));
+  }
+  if (tiles.empty()) throw std::runtime_error(video.source->name() + ": no frame to show");
+  const int across = std::min(columns, static_cast<int>(tiles.size())),
+            down = (static_cast<int>(tiles.size()) + across - 1) / across;
+  const cv::Size size = tiles[0].size();
+  cv::Mat sheet(down * size.height, across * size.width, CV_8UC3, cv::Scalar::all(255));
+  for (int i = 0; i < static_cast<int>(tiles.size()); ++i)
+    tiles[static_cast<std::size_t>(i)].copyTo(
+        sheet(cv::Rect({i % across * size.width, i / across * size.height}, size)));
+  const auto name = context.item.empty() ? "strip" : context.item;
+  return write_png(context, folder, name, "frames of " + video.source->name(), sheet);
+}
+
+void describe(Description<FrameStrip>& d) {
+  d.type("face.strip")
+      .version(1)
+      .summary("frames of a clip with their phones, as one picture")
+      .source("Thesis Appendix D")
+      .sink();
+  d.input("video").input("labels", "phone of every frame").output("picture");
+  d.param("every", &FrameStrip::every).at_least(1).unit("frames").doc("shows one frame of so many");
+  d.param("columns", &FrameStrip::columns).at_least(1).doc("pictures in a row");
+  d.param("width", &FrameStrip::width).within(16, 4000).unit("px").doc("of one picture");
+  d.param("folder", &FrameStrip::folder).doc("below the run folder");
+}
+
+}  // namespace talkgraph

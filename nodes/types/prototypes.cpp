@@ -1,0 +1,11 @@
+#include "nodes/types/prototypes.h"
+
+namespace talkgraph {
+
+void fields(Archive& ar, Prototypes& p) {
+  ar("images", p.images);
+  ar("shapes", p.shapes);
+  ar("scheme", p.scheme);
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,98 @@
+#include "nodes/face/build.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "nodes/face/geometry.h"
+#include "nodes/face/sampling.h"
+#include "synthetic_face.h"
+
+namespace talkgraph {
+namespace {
+
+AppearanceModel build(const Prototypes& p) {
+  Context context;
+  return BuildAppearance{}(p, context);
+}
+
+std::string hash(AppearanceModel m) {
+  return content_hash([&](Archive& ar) { fields(ar, m); });
+}
+
+TEST(BuildAppearance, ReconstructsPrototypesWithinTheVarianceKept) {
+  const auto prototypes = test::synthetic_prototypes();
+  const auto m = build(prototypes);
+  double lost = 0, total = 0;
+  for (std::size_t i = 0; i < prototypes.shapes.size(); ++i) {
+    Pyramid picture(prototypes.images[i].pixels);
+    Eigen::VectorXf texture;
+    sample(picture, prototypes.shapes[i], m.triangles, m.levels[0].raster, texture);
+    normalise(texture);
+    const Eigen::VectorXd centred = (texture - m.levels[0].mean->col(0)).cast<double>();
+    const Eigen::VectorXd b = m.texture_modes->cast<double>().transpose() * centred;
+    lost += (centred - m.texture_modes->cast<double>() * b).squaredNorm();
+    total += centred.squaredNorm();
+  }
+  EXPECT_LT(lost / total, 0.0101);
+  EXPECT_LT(m.residual, 2);
+}
+
+TEST(BuildAppearance, WeighsShapeAgainstTexture) {
+  const auto m = build(test::synthetic_prototypes());
+  EXPECT_NEAR(m.shape_weight * m.shape_weight, m.texture_variances.sum() / m.shape_variances.sum(), 1e-9);
+  EXPECT_EQ(m.combined_modes.rows(), m.shape_variances.size() + m.texture_variances.size());
+  EXPECT_GE(m.combined_variances.sum(), 0.99 * 2 * m.texture_variances.sum() * (1 - 1e-9));
+}
+
+TEST(BuildAppearance, NeverEnlarges) {
+  const auto m = build(test::synthetic_prototypes());
+  const double width = m.mean_shape.col(0).maxCoeff() - m.mean_shape.col(0).minCoeff();
+  EXPECT_LT(width, 91);
+  EXPECT_GT(width, 89);
+  EXPECT_NEAR(m.picture_scale, 1, 0.01);
+}
+
+TEST(BuildAppearance, IsTheSameEachTime) {
+  const auto p = test::synthetic_prototypes();
+  EXPECT_EQ(hash(build(p)), hash(build(p)));
+}
+
+TEST(BuildAppearance, SurvivesSavingAndLoading) {
+  auto m = build(test::synthetic_prototypes());
+  const auto path = (std::filesystem::path(testing::TempDir()) / "face_model.h5").string();
+  {
+    auto out = hdf5_writer(path);
+    fields(*out, m);
+  }
+  AppearanceModel loaded;
+  fields(*hdf5_reader(path), loaded);
+  std::filesystem::remove(path);
+  EXPECT_EQ(hash(loaded), hash(m));
+}
+
+TEST(BuildAppearance, OnePrototypeGivesARigidModel) {
+  auto p = test::synthetic_prototypes();
+  p.images.resize(1);
+  p.shapes.resize(1);
+  const auto m = build(p);
+  EXPECT_EQ(m.modes(), 0);
+  EXPECT_TRUE(m.shape(Eigen::VectorXd(0)).isApprox(m.mean_shape));
+}
+
+TEST(BuildAppearance, RefusesWhatIsNoPrototype) {
+  EXPECT_THROW(build({}), std::runtime_error);
+  auto p = test::synthetic_prototypes();
+  p.shapes[3](2, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(build(p), std::runtime_error);
+  p = test::synthetic_prototypes();
+  p.shapes[2].conservativeResize(10, 2);
+  EXPECT_THROW(build(p), std::runtime_error);
+  p = test::synthetic_prototypes();
+  p.images[1].pixels.setTo(cv::Scalar::all(77));
+  EXPECT_THROW(build(p), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace talkgraph

@@ -1,0 +1,185 @@
+#include "nodes/face/composite.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "nodes/face/base_clip.h"
+#include "nodes/face/build.h"
+#include "nodes/face/choose_base.h"
+#include "nodes/face/modes.h"
+#include "nodes/face/parameters.h"
+#include "nodes/face/render.h"
+#include "nodes/face/shapes.h"
+#include "nodes/face/side_by_side.h"
+#include "nodes/face/strip.h"
+#include "nodes/face/track.h"
+#include "synthetic_face.h"
+
+namespace talkgraph {
+namespace {
+
+const AppearanceModel& model() {
+  static const AppearanceModel built = [] {
+    Context context;
+    return BuildAppearance{}(test::synthetic_prototypes(), context);
+  }();
+  return built;
+}
+
+Video still(double open, int frames, std::string name = "still") {
+  test::SyntheticFace f;
+  f.open = open;
+  return video_from_frames(std::vector<cv::Mat>(static_cast<std::size_t>(frames), test::draw(f)), Rational(25),
+                           std::move(name));
+}
+
+Video talking(int frames) {
+  std::vector<cv::Mat> all;
+  for (int t = 0; t < frames; ++t) all.push_back(test::draw(test::talking_face(t)));
+  return video_from_frames(all, Rational(25), "talking");
+}
+
+FaceTrack track(const Video& video) {
+  Context context;
+  return TrackFace{}(model(), video, context);
+}
+
+BaseClip base_of(const Video& video) { return MakeBaseClip{}(video, track(video)); }
+
+TEST(CompositeFace, OwnParametersReproduceThePicture) {
+  const auto base = base_of(talking(5));
+  for (const auto part : {FacePart::lower, FacePart::whole}) {
+    CompositeFace node;
+    node.part = part;
+    const auto drawn = node(model(), base.track.parameters, base).read_all();
+    const auto real = base.frames.read_all();
+    ASSERT_EQ(drawn.size(), 5u);
+    for (std::size_t t = 0; t < 5; ++t) EXPECT_GT(test::psnr(drawn[t], real[t]), 38) << t;
+  }
+}
+
+TEST(CompositeFace, PutsTheMouthOfOneClipOnAnother) {
+  const auto shut = base_of(still(0.1, 2)), open = base_of(still(0.9, 2));
+  const auto drawn = CompositeFace{}(model(), open.track.parameters, shut).read_all();
+  const auto wanted = open.frames.read_all(), before = shut.frames.read_all();
+  EXPECT_GT(test::psnr(drawn[0], wanted[0]), test::psnr(before[0], wanted[0]) + 8);
+  EXPECT_GT(test::psnr(drawn[0], wanted[0]), 32);
+}
+
+TEST(CompositeFace, LeavesTheRestOfThePictureAlone) {
+  const auto shut = base_of(still(0.1, 1)), open = base_of(still(0.9, 1));
+  const auto drawn = CompositeFace{}(model(), open.track.parameters, shut).read_all()[0];
+  const auto before = shut.frames.read_all()[0];
+  EXPECT_EQ(cv::norm(drawn.rowRange(0, 15), before.rowRange(0, 15), cv::NORM_INF), 0);
+  const cv::Rect eyes(70, 70, 60, 20);
+  EXPECT_LE(cv::norm(drawn(eyes), before(eyes), cv::NORM_INF), 2);
+}
+
+TEST(CompositeFace, RunsAShortBaseBackAndForth) {
+  const auto base = base_of(talking(3));
+  Track p = base.track.parameters;
+  p.values = Eigen::MatrixXd(7, model().modes());
+  for (int t = 0; t < 7; ++t)
+    p.values.row(t) = base.track.parameters.values.row(std::vector<int>{0, 1, 2, 1, 0, 1, 2}[t]);
+  const auto drawn = CompositeFace{}(model(), p, base).read_all();
+  ASSERT_EQ(drawn.size(), 7u);
+  EXPECT_EQ(cv::norm(drawn[1], drawn[3], cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(drawn[0], drawn[4], cv::NORM_INF), 0);
+}
+
+TEST(CompositeFace, DrawsOnGoodFramesOnly) {
+  auto base = base_of(talking(4));
+  base.track.lost = {1, 0, 0, 1};
+  Track p = base.track.parameters;
+  p.values = base.track.parameters.values.middleRows(1, 1).eval();
+  EXPECT_GT(test::psnr(CompositeFace{}(model(), p, base).read_all()[0], base.frames.read_all()[1]), 38);
+  base.track.lost = {1, 1, 1, 1};
+  EXPECT_THROW(CompositeFace{}(model(), p, base), std::runtime_error);
+}
+
+TEST(CompositeFace, RefusesParametersOfAnotherModel) {
+  const auto base = base_of(talking(1));
+  Track p = base.track.parameters;
+  p.values.conservativeResize(1, p.values.cols() - 1);
+  EXPECT_THROW(CompositeFace{}(model(), p, base), std::runtime_error);
+  p.values = Eigen::MatrixXd::Constant(1, model().modes(), std::nan(""));
+  EXPECT_THROW(CompositeFace{}(model(), p, base), std::runtime_error);
+}
+
+TEST(RenderFace, ShowsTheMeanFace) {
+  Track p{Eigen::MatrixXd::Zero(2, model().modes()), Rational(25), 0.02, {}};
+  const auto video = RenderFace{}(model(), p);
+  const auto frames = video.read_all();
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[0].size(), video.source->size());
+  EXPECT_EQ(frames[0].cols % 2 + frames[0].rows % 2, 0);
+  EXPECT_EQ(frames[0].at<cv::Vec3b>(0, 0), cv::Vec3b(128, 128, 128));
+  EXPECT_NE(frames[0].at<cv::Vec3b>(frames[0].rows / 2, frames[0].cols / 2), cv::Vec3b(128, 128, 128));
+}
+
+TEST(FaceShapes, OpenMouthsAreTallerThanShut) {
+  const auto shut = track(still(0.1, 1)), open = track(still(0.9, 1));
+  const auto height = [](const FaceTrack& t) {
+    const Shape mouth = FaceShapes{}(model(), FaceParameters{}(t)).frames[0].bottomRows(8);
+    return mouth.col(1).maxCoeff() - mouth.col(1).minCoeff();
+  };
+  EXPECT_NEAR(height(open) - height(shut), 45 * 2 * 0.16 * 0.8, 1);
+}
+
+TEST(ChooseBase, PrefersNoLostFramesThenTheLowestResidual) {
+  Collected<Video> videos;
+  Collected<FaceTrack> tracks;
+  const auto add = [&](std::string key, std::int64_t lost, double residual) {
+    auto t = track(still(0.5, 1));
+    t.lost = {lost};
+    t.residual = {residual};
+    videos.add(key, still(0.5, 1, key));
+    tracks.add(key, t);
+  };
+  add("a", 1, 1);
+  add("b", 0, 3);
+  add("c", 0, 2);
+  videos.add("untracked", still(0.5, 1));
+  EXPECT_EQ(ChooseBase{}(videos, tracks).frames.source->name(), "c");
+  EXPECT_EQ(ChooseBase{"a"}(videos, tracks).frames.source->name(), "a");
+  EXPECT_THROW(ChooseBase{"d"}(videos, tracks), std::runtime_error);
+  EXPECT_THROW(ChooseBase{}({}, {}), std::runtime_error);
+}
+
+TEST(MakeBaseClip, RefusesUnequalLengths) {
+  EXPECT_THROW(MakeBaseClip{}(talking(2), track(talking(1))), std::runtime_error);
+}
+
+TEST(SideBySide, HasTheShorterLengthAndEvenSides) {
+  const auto small = video_from_frames({cv::Mat(51, 33, CV_8UC3, cv::Scalar(1, 2, 3))}, Rational(25));
+  const auto both = SideBySide{}(talking(3), small);
+  EXPECT_EQ(both.source->frames(), 1);
+  const auto frames = both.read_all();
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].size(), both.source->size());
+  EXPECT_EQ(frames[0].cols % 2 + frames[0].rows % 2, 0);
+  EXPECT_EQ(frames[0].at<cv::Vec3b>(frames[0].rows - 1, frames[0].cols - 1), cv::Vec3b(1, 2, 3));
+  EXPECT_NE(both.source->content_key(), SideBySide{}(talking(2), small).source->content_key());
+  EXPECT_THROW(SideBySide{}(talking(1), video_from_frames({small.read_all()[0]}, Rational(30))), std::runtime_error);
+}
+
+TEST(Sinks, WriteTheirPictures) {
+  Context context;
+  context.folder = std::filesystem::path(testing::TempDir()) / "face_sinks";
+  context.item = "utterance";
+  const FrameLabels labels{{"sil", "aa"}, Rational(25)};
+  const auto strip = FrameStrip{}(talking(3), &labels, context);
+  EXPECT_EQ(strip.path, "strips/utterance.png");
+  EXPECT_EQ(cv::imread((context.folder / strip.path).string()).cols, 3 * 160);
+  const auto modes = FaceModes{}(model(), context);
+  EXPECT_FALSE(cv::imread((context.folder / modes.path).string()).empty());
+  std::filesystem::remove_all(context.folder);
+  EXPECT_THROW(FrameStrip{}(video_from_frames({}, Rational(25)), nullptr, context), std::runtime_error);
+  context.folder = "/proc/nowhere";
+  EXPECT_THROW(FaceModes{}(model(), context), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace talkgraph
