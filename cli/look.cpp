@@ -38,8 +38,7 @@ void parameter_lines(const std::vector<ParameterSpec>& specs, const std::string&
 std::string example(const NodeType& type) {
   const auto name = type.name.substr(type.name.rfind('.') + 1);
   std::string in;
-  for (const auto& port : type.inputs)
-    in += fmt::format("{}\"{}\": \"NODE.PORT\"", in.empty() ? "" : ", ", port.name);
+  for (const auto& port : type.inputs) in += fmt::format("{}\"{}\": \"NODE.PORT\"", in.empty() ? "" : ", ", port.name);
   return fmt::format("    \"{}\": {{ \"type\": \"{}\"{} }}\n", name, type.name,
                      in.empty() ? "" : ", \"in\": { " + in + " }");
 }
@@ -75,8 +74,7 @@ std::string list_nodes(const Registry& registry, const std::string& word) {
 std::string show_node(const Registry& registry, const std::string& name) {
   const NodeType* type = registry.find(name);
   if (!type)
-    throw std::invalid_argument(
-        fmt::format("unknown node type \"{}\"{}", name, did_you_mean(name, registry.names())));
+    throw std::invalid_argument(fmt::format("unknown node type \"{}\"{}", name, did_you_mean(name, registry.names())));
   std::string out = fmt::format("{} (version {}): {}\n", type->name, type->version, type->summary);
   if (!type->source.empty()) out += fmt::format("  source: {}\n", type->source);
   if (type->uses_random) out += "  draws random numbers from the graph's seed\n";
@@ -91,7 +89,8 @@ std::string show_node(const Registry& registry, const std::string& name) {
 
 std::string draw_dot(const Graph& graph) {
   std::string out =
-      "digraph {\n  rankdir=LR;\n  node [shape=box, style=\"rounded,filled\", fillcolor=\"#eef3f8\", color=\"#5b7a99\", "
+      "digraph {\n  rankdir=LR;\n  node [shape=box, style=\"rounded,filled\", fillcolor=\"#eef3f8\", "
+      "color=\"#5b7a99\", "
       "fontname=\"Helvetica\"];\n  edge [fontname=\"Helvetica\", fontsize=10, color=\"#5b7a99\"];\n";
   for (std::size_t i = 0; i < graph.nodes.size(); ++i)
     out += fmt::format("  n{} [label=\"{}\\n{}\"{}];\n", i, graph.nodes[i].name, graph.nodes[i].type->name,

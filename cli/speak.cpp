@@ -17,14 +17,17 @@ namespace fs = std::filesystem;
 void check(const SpeakCommand& command) {
   const auto refuse = [](const std::string& why) { throw std::invalid_argument(why); };
   if (command.files.empty() == command.text.empty()) refuse("give either recordings or --text");
-  if (!command.text.empty() && !command.transcripts.empty()) refuse("--transcript goes with recordings, not with --text");
+  if (!command.text.empty() && !command.transcripts.empty())
+    refuse("--transcript goes with recordings, not with --text");
   if (!command.transcripts.empty() && command.transcripts.size() != command.files.size())
     refuse(fmt::format("{} recordings but {} transcripts: give --transcript once for each recording, in order",
                        command.files.size(), command.transcripts.size()));
-  if (command.output.empty() && command.visemes.empty()) refuse("say where to write: -o clip.mp4, --visemes FILE, or both");
-  for (const auto& [path, endings] : {std::pair(command.output, std::pair(".mp4", ".webm")),
-                                      std::pair(command.visemes, std::pair(".tsv", ".json"))})
-    if (!path.empty() && command.files.size() < 2 && path.extension() != endings.first && path.extension() != endings.second)
+  if (command.output.empty() && command.visemes.empty())
+    refuse("say where to write: -o clip.mp4, --visemes FILE, or both");
+  for (const auto& [path, endings] :
+       {std::pair(command.output, std::pair(".mp4", ".webm")), std::pair(command.visemes, std::pair(".tsv", ".json"))})
+    if (!path.empty() && command.files.size() < 2 && path.extension() != endings.first &&
+        path.extension() != endings.second)
       refuse(fmt::format("{}: the name must end in {} or {}", path.string(), endings.first, endings.second));
 }
 
@@ -43,9 +46,10 @@ std::vector<std::string> settings(const SpeakCommand& command) {
   }
   if (!command.base.empty()) {
     sets.push_back(set("nodes.base_video", {{"type", "media.video"}, {"params", {{"file", absolute(command.base)}}}}));
-    sets.push_back(set("nodes.base_track",
-                       {{"type", "face.track"}, {"in", {{"face", "model.face"}, {"video", "base_video"}}}}));
-    sets.push_back(set("nodes.base", {{"type", "face.base_clip"}, {"in", {{"video", "base_video"}, {"track", "base_track"}}}}));
+    sets.push_back(
+        set("nodes.base_track", {{"type", "face.track"}, {"in", {{"face", "model.face"}, {"video", "base_video"}}}}));
+    sets.push_back(
+        set("nodes.base", {{"type", "face.base_clip"}, {"in", {{"video", "base_video"}, {"track", "base_track"}}}}));
     sets.push_back(set("nodes.composite.in.base", "base"));
   }
   if (command.output.extension() == ".webm") sets.push_back(set("nodes.encode.params.format", "webm"));
@@ -72,7 +76,8 @@ class WorkFolder {
 };
 
 /// Puts what the graph wrote where the user wants it, and names it on stdout.
-void deliver(const RunResult& result, const std::string& output, const fs::path& from, const fs::path& to, bool several) {
+void deliver(const RunResult& result, const std::string& output, const fs::path& from, const fs::path& to,
+             bool several) {
   const auto& items = result.output(output).items;
   if (items.empty()) throw std::runtime_error(fmt::format("the model's graph gave no {}", output));
   if (several) fs::create_directories(to);

@@ -1,9 +1,9 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <opencv2/core.hpp>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
+#include <opencv2/core.hpp>
 
 #include "cli/look.h"
 #include "cli/registry.h"
@@ -77,11 +77,14 @@ int main(int argc, char** argv) {
   speak_app->add_option("speech", speech.files, "sound files");
   speak_app->add_option("--text", speech.text, "what espeak-ng shall say, instead of sound files");
   speak_app->add_option("--transcript", speech.transcripts, "what a sound file says; once for each, in order")
-      ->take_all()->allow_extra_args(false);
+      ->take_all()
+      ->allow_extra_args(false);
   speak_app->add_option("-o,--output", speech.output, "clip (.mp4 or .webm); a folder for several sound files");
   speak_app->add_option("--visemes", speech.visemes, "viseme track (.tsv or .json) in Rhubarb's format");
   speak_app->add_option("--base", speech.base, "clip or still to draw upon");
-  speak_app->add_option("--set", speech.sets, "change the model's graph: path=value")->take_all()->allow_extra_args(false);
+  speak_app->add_option("--set", speech.sets, "change the model's graph: path=value")
+      ->take_all()
+      ->allow_extra_args(false);
   speak_app->add_option("--threads", speech.threads, "threads")->check(CLI::Range(1, 256));
   speak_app->add_flag("-q,--quiet", speech.quiet, "no progress");
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "graph/description.h"
-#include "nodes/types/report.h"
 #include "nodes/model/talking_face.h"
+#include "nodes/types/report.h"
 
 namespace talkgraph {
 

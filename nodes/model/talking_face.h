@@ -14,7 +14,7 @@ namespace talkgraph {
 /// All that is needed to let new speech drive a learnt face, in one file.
 struct TalkingFace {
   AppearanceModel face;
-  BaseClip base;      ///< pictures that speech is drawn upon
+  BaseClip base;  ///< pictures that speech is drawn upon
   Vlmm contexts;
   Ssgpdm states;
   Track mean;         ///< 1 × D: mean visual parameters of the training clips

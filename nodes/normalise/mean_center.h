@@ -1,0 +1,19 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/track.h"
+
+namespace talkgraph {
+
+/// Takes each sequence's mean off, per dimension (Eqn 3.36): over all its
+/// frames, pauses included, or over those that `usable` marks.
+struct MeanCenter {
+  struct Out {
+    Track centred;  ///< T × D
+    Track mean;     ///< 1 × D
+  };
+  Out operator()(const Track& track, const Mask* usable) const;
+};
+void describe(Description<MeanCenter>& d);
+
+}  // namespace talkgraph

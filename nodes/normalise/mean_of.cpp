@@ -1,0 +1,29 @@
+#include "nodes/normalise/mean_of.h"
+
+#include <stdexcept>
+
+namespace talkgraph {
+
+Track MeanOf::operator()(const Collected<Track>& tracks) const {
+  if (tracks.empty()) throw std::runtime_error("the mean of no tracks: is the training selection empty?");
+  Track out = tracks[0];
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(out.dimension());
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (tracks[i].dimension() != out.dimension())
+      throw std::runtime_error(tracks.key(i) + ": " + std::to_string(tracks[i].dimension()) +
+                               " dimensions, others have " + std::to_string(out.dimension()));
+    sum += tracks[i].values.colwise().sum();
+    rows += tracks[i].frames();
+  }
+  if (rows == 0) throw std::runtime_error("the mean of tracks without frames");
+  out.values = sum / static_cast<double>(rows);
+  return out;
+}
+
+void describe(Description<MeanOf>& d) {
+  d.type("normalise.mean_of").summary("mean row of all tracks");
+  d.input("tracks").output("mean", "1 x D");
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,15 @@
+#include "nodes/normalise/register.h"
+
+#include "nodes/normalise/mean_center.h"
+#include "nodes/normalise/mean_of.h"
+#include "nodes/normalise/restore.h"
+
+namespace talkgraph {
+
+void register_normalise(Registry& registry) {
+  registry.add<MeanCenter>();
+  registry.add<MeanOf>();
+  registry.add<Restore>();
+}
+
+}  // namespace talkgraph

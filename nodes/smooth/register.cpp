@@ -1,0 +1,9 @@
+#include "nodes/smooth/register.h"
+
+#include "nodes/smooth/lowpass.h"
+
+namespace talkgraph {
+
+void register_smooth(Registry& registry) { registry.add<Lowpass>(); }
+
+}  // namespace talkgraph

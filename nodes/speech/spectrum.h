@@ -1,0 +1,23 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/frames.h"
+
+namespace talkgraph {
+
+enum class SpectrumKind { magnitude, power };
+template <>
+inline constexpr EnumNames<SpectrumKind, 2> enum_names<SpectrumKind>{
+    {{SpectrumKind::magnitude, "magnitude"}, {SpectrumKind::power, "power"}}};
+
+/// Short-time spectrum: frames padded with zeros to the next power of two
+/// (or to `size`), DFT, bins 0 to Nyquist (T × size / 2 + 1).
+struct ShortTimeSpectrum {
+  SpectrumKind kind = SpectrumKind::magnitude;
+  int size = 0;  ///< points of the DFT, a power of two; 0: the next one
+
+  Spectrum operator()(const Frames& frames) const;
+};
+void describe(Description<ShortTimeSpectrum>& d);
+
+}  // namespace talkgraph

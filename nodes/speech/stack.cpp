@@ -1,0 +1,27 @@
+#include "nodes/speech/stack.h"
+
+#include <algorithm>
+
+namespace talkgraph {
+
+Track Stack::operator()(const Track& track) const {
+  const auto frames = track.frames(), dimension = track.dimension();
+  Track out;
+  out.rate = track.rate;
+  out.start = track.start;
+  out.values.resize(frames, dimension * (before + 1 + after));
+  for (Eigen::Index t = 0; t < frames; ++t)
+    for (int n = -before; n <= after; ++n)
+      out.values.block(t, (n + before) * dimension, 1, dimension) =
+          track.values.row(std::clamp<Eigen::Index>(t + n, 0, frames - 1));
+  return out;
+}
+
+void describe(Description<Stack>& d) {
+  d.type("speech.stack").summary("each frame with its neighbours");
+  d.input("track").output("track");
+  d.param("before", &Stack::before).within(0, 100).unit("frames");
+  d.param("after", &Stack::after).within(0, 100).unit("frames");
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,58 @@
+#include "nodes/sync/median.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "nodes/sync/video_frames.h"
+
+namespace talkgraph {
+namespace {
+
+double median(std::vector<double>& v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  if (v.size() % 2) return *middle;
+  return (*middle + *std::max_element(v.begin(), middle)) / 2;
+}
+
+}  // namespace
+
+Track MedianSync::operator()(const Track& track, const Audio* audio) const {
+  check_finite(track);
+  Track out;
+  out.rate = rate;
+  out.start = video_time(0, rate);
+  out.names = track.names;
+  out.values.resize(video_frames(track, audio, rate), track.dimension());
+  const double in_rate = track.rate.value();
+  const auto last = static_cast<double>(track.frames() - 1);
+  const auto position = [&](double seconds) { return (seconds - track.start) * in_rate; };
+  std::vector<double> column;
+  for (Eigen::Index n = 0; n < out.frames(); ++n) {
+    // A centre on the border, up to rounding, belongs to the later frame.
+    double first = std::ceil(position(static_cast<double>(n) / rate.value()) - 1e-9);
+    double end = std::ceil(position(static_cast<double>(n + 1) / rate.value()) - 1e-9);
+    if (end <= std::max(first, 0.0) || first > last) {
+      first = std::clamp(std::round(position(video_time(n, rate))), 0.0, last);
+      end = first + 1;
+    }
+    const auto from = static_cast<Eigen::Index>(std::max(first, 0.0));
+    const auto to = static_cast<Eigen::Index>(std::min(end, last + 1));
+    for (Eigen::Index d = 0; d < track.dimension(); ++d) {
+      column.assign(track.values.col(d).data() + from, track.values.col(d).data() + to);
+      out.values(n, d) = median(column);
+    }
+  }
+  return out;
+}
+
+void describe(Description<MedianSync>& d) {
+  d.type("sync.median")
+      .summary("to the video rate by the median of the frames in each video frame")
+      .source("Thesis §3.5.1");
+  d.input("track").input("audio", "gives the exact length").output("track");
+  d.param("rate", &MedianSync::rate).positive().unit("frames/s").doc("video rate");
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,23 @@
+#include "nodes/sync/video_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace talkgraph {
+
+Eigen::Index video_frames(const Track& track, const Audio* audio, const Rational& fps) {
+  const double seconds =
+      audio ? audio->seconds() : 2 * track.start + static_cast<double>(track.frames() - 1) / track.rate.value();
+  return std::max<Eigen::Index>(1, std::lround(seconds * fps.value()));
+}
+
+double video_time(Eigen::Index n, const Rational& fps) { return (static_cast<double>(n) + 0.5) / fps.value(); }
+
+void check_finite(const Track& track) {
+  if (track.frames() < 1) throw std::runtime_error("a track without frames cannot be brought to the video rate");
+  if (!track.values.allFinite())
+    throw std::runtime_error("a track with NaN or infinite values: look at the stage before");
+}
+
+}  // namespace talkgraph

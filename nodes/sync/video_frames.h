@@ -1,0 +1,18 @@
+#pragma once
+
+#include "nodes/types/audio.h"
+#include "nodes/types/track.h"
+
+namespace talkgraph {
+
+/// Video frames in sound of this length: round(seconds × fps), at least 1. The
+/// length is that of `audio`, or as far as `track` reaches where there is none.
+Eigen::Index video_frames(const Track& track, const Audio* audio, const Rational& fps);
+
+/// Centre of video frame n, seconds: (n + ½) / fps.
+double video_time(Eigen::Index n, const Rational& fps);
+
+/// Throws std::runtime_error if a track is empty or holds NaN or infinity.
+void check_finite(const Track& track);
+
+}  // namespace talkgraph

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "graph/value.h"
+
+namespace talkgraph {
+
+/// Sound cut into overlapping frames: one row a frame (T × N samples).
+struct Frames {
+  Eigen::MatrixXd values;
+  Rational rate{100};  ///< frames per second
+  double start = 0;    ///< centre of the first frame, seconds
+  double sample_rate = 16000;
+};
+template <>
+inline constexpr PortType port_type<Frames>{"Frames", 1};
+void fields(Archive& ar, Frames& f);
+
+/// Spectra of frames: one row a frame, bins from 0 to the Nyquist frequency.
+struct Spectrum {
+  Eigen::MatrixXd values;
+  Rational rate{100};
+  double start = 0;
+  double sample_rate = 16000;
+  bool power = false;  ///< |DFT|² instead of |DFT|
+
+  double bin_hz() const { return sample_rate / 2 / static_cast<double>(values.cols() - 1); }
+};
+template <>
+inline constexpr PortType port_type<Spectrum>{"Spectrum", 1};
+void fields(Archive& ar, Spectrum& s);
+
+}  // namespace talkgraph

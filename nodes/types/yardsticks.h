@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "graph/value.h"
+
+namespace talkgraph {
+
+/// Training frames as plain regression sees them: z-scored audio with ±n
+/// neighbours, and what it has to predict.
+struct StackedInputs {
+  int context = 5;           ///< frames on each side
+  Eigen::RowVectorXd mean;   ///< of the audio dimensions
+  Eigen::RowVectorXd scale;  ///< 1 / standard deviation; 0 for a constant dimension
+};
+void fields(Archive& ar, StackedInputs& s);
+
+/// The training mean.
+struct MeanModel {
+  Eigen::RowVectorXd mean;
+};
+template <>
+inline constexpr PortType port_type<MeanModel>{"MeanModel", 1};
+void fields(Archive& ar, MeanModel& m);
+
+/// Ridge regression from stacked audio to visual parameters.
+struct RidgeModel {
+  StackedInputs inputs;
+  Eigen::MatrixXd weights;    ///< stacked audio × visual
+  Eigen::RowVectorXd offset;  ///< visual
+};
+template <>
+inline constexpr PortType port_type<RidgeModel>{"RidgeModel", 1};
+void fields(Archive& ar, RidgeModel& m);
+
+/// All training frames, to look neighbours up in.
+struct NeighboursModel {
+  StackedInputs inputs;
+  Eigen::MatrixXd audio;   ///< N × stacked audio, z-scored
+  Eigen::MatrixXd visual;  ///< N × visual
+};
+template <>
+inline constexpr PortType port_type<NeighboursModel>{"NeighboursModel", 1};
+void fields(Archive& ar, NeighboursModel& m);
+
+}  // namespace talkgraph

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/track.h"
+#include "nodes/types/yardsticks.h"
+
+namespace talkgraph {
+
+/// Keeps all training frames: z-scored audio with ±`context` neighbours.
+struct NeighboursTrain {
+  int context = 5;
+
+  NeighboursModel operator()(const Collected<Track>& audio, const Collected<Track>& visual) const;
+};
+void describe(Description<NeighboursTrain>& d);
+
+/// The mean of the visual frames whose audio is nearest (Euclidean) to that of
+/// each frame; of all of them where there are fewer than k.
+struct NeighboursPredict {
+  int k = 10;
+
+  Track operator()(const NeighboursModel& model, const Track& audio) const;
+};
+void describe(Description<NeighboursPredict>& d);
+
+}  // namespace talkgraph
