@@ -1,0 +1,17 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/phones.h"
+#include "nodes/types/vlmm.h"
+
+namespace talkgraph {
+
+/// The context label of each frame of a phone stream: its memory and the phone,
+/// joined by '-', oldest first (spec §5, thesis Figure 5.9). An unseen phone or
+/// transition gives the phone alone.
+struct ContextDecode {
+  FrameLabels operator()(const Vlmm& vlmm, const FrameLabels& labels) const;
+};
+void describe(Description<ContextDecode>& d);
+
+}  // namespace talkgraph

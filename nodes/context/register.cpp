@@ -1,0 +1,17 @@
+#include "nodes/context/register.h"
+
+#include "nodes/context/decode.h"
+#include "nodes/context/segment.h"
+#include "nodes/context/train.h"
+#include "nodes/context/windows.h"
+
+namespace talkgraph {
+
+void register_context(Registry& registry) {
+  registry.add<ContextDecode>();
+  registry.add<ContextSegment>();
+  registry.add<ContextTrain>();
+  registry.add<ContextWindows>();
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/phones.h"
+#include "nodes/types/segments.h"
+#include "nodes/types/vlmm.h"
+
+namespace talkgraph {
+
+/// What a state of the switching model stands for.
+enum class StateKind {
+  contexts,  ///< a context label of the Markov model
+  phones,    ///< a phone; its windows are the phone's runs
+};
+template <>
+inline constexpr EnumNames<StateKind, 2> enum_names<StateKind>{
+    {{StateKind::contexts, "contexts"}, {StateKind::phones, "phones"}}};
+
+/// Cuts a stream of context labels into segments that do not overlap (spec §5,
+/// thesis Algorithm 4): labels too thin to train become their longest trainable
+/// suffix; then, from the last frame backwards, each label takes as many frames
+/// as it has phones, fewer at the beginning of the stream. With phones as
+/// states, segments are the runs of each phone.
+struct ContextSegment {
+  StateKind states = StateKind::contexts;
+
+  SegmentTrack operator()(const Vlmm& vlmm, const FrameLabels& contexts) const;
+};
+void describe(Description<ContextSegment>& d);
+
+}  // namespace talkgraph

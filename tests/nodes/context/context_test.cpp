@@ -1,0 +1,228 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "graph/random.h"
+#include "nodes/context/automaton.h"
+#include "nodes/context/decode.h"
+#include "nodes/context/segment.h"
+#include "nodes/context/train.h"
+#include "nodes/context/windows.h"
+
+namespace talkgraph {
+namespace {
+
+FrameLabels stream(const std::string& letters) {
+  FrameLabels f;
+  for (const char c : letters) f.labels.emplace_back(1, c);
+  return f;
+}
+
+std::string random_stream(Random& random, int n, int symbols) {
+  std::string s;
+  char at = 'a';
+  for (int i = 0; i < n; ++i) {
+    if (random.uniform() < 0.4) at = static_cast<char>('a' + random.below(static_cast<std::uint64_t>(symbols)));
+    s += at;
+  }
+  return s;
+}
+
+std::set<std::string> memories(const Vlmm& v) {
+  std::set<std::string> all;
+  for (const auto& s : v.states) {
+    std::string w;
+    for (const auto i : s.memory) w += v.alphabet[static_cast<std::size_t>(i)];
+    all.insert(w);
+  }
+  return all;
+}
+
+// "abab...": after a always b, after b always a. The memories a and b predict
+// far better than none; longer ones add nothing.
+TEST(ContextTrain, FindsTheSmallAutomatonOfAnAlternation) {
+  const Vlmm v = ContextTrain{.order = 3, .prune = 0, .keep = 0.01}({{"x", stream("abababababababababab")}});
+  EXPECT_EQ(memories(v), (std::set<std::string>{"", "a", "b"}));
+  const auto& a = v.states[1];
+  ASSERT_EQ(a.memory, std::vector<std::int64_t>{0});
+  EXPECT_EQ(a.probability, (std::vector<double>{0, 1}));
+  EXPECT_EQ(a.next, (std::vector<std::int64_t>{-1, 2}));
+  EXPECT_EQ(context_labels(v, {"a", "b", "a"}), (std::vector<std::string>{"a", "a-b", "b-a"}));
+}
+
+// Straight from the definitions: substrings counted by search, the criterion
+// applied to every string of the right length.
+TEST(ContextTrain, AgreesWithADirectSearch) {
+  Random random(3);
+  const std::vector<std::string> texts = {random_stream(random, 200, 3), random_stream(random, 150, 3)};
+  const ContextTrain node{.order = 3, .prune = 0.01, .keep = 0.002};
+  const Vlmm v = node({{"x", stream(texts[0])}, {"y", stream(texts[1])}});
+
+  const auto count = [&](const std::string& w) {
+    double n = 0;
+    for (const auto& t : texts)
+      for (std::size_t i = 0; i + w.size() <= t.size(); ++i) n += t.compare(i, w.size(), w) == 0;
+    return n;
+  };
+  const auto next = [&](const std::string& w, char c) {
+    const double sum = count(w + "a") + count(w + "b") + count(w + "c");
+    return sum > 0 ? count(w + c) / sum : 0;
+  };
+  std::set<std::string> expected = {""};
+  const std::function<void(const std::string&)> visit = [&](const std::string& w) {
+    if (count(w) / 350 <= node.prune) return;
+    double gain = 0;
+    for (const char c : {'a', 'b', 'c'})
+      if (next(w, c) > 0) gain += next(w, c) * std::log(next(w, c) / next(w.substr(1), c));
+    if (count(w) / 350 * gain >= node.keep)
+      for (std::size_t i = 0; i < w.size(); ++i) expected.insert(w.substr(i));
+    if (static_cast<int>(w.size()) < node.order)
+      for (const char c : {'a', 'b', 'c'}) visit(c + w);
+  };
+  for (const char c : {'a', 'b', 'c'}) visit(std::string(1, c));
+  EXPECT_GT(expected.size(), 4u);
+  EXPECT_EQ(memories(v), expected);
+}
+
+TEST(ContextTrain, CountsOccupancyAndWindows) {
+  const Vlmm v = ContextTrain{.order = 1, .prune = 0, .keep = 0}({{"x", stream("aabaab")}});
+  EXPECT_EQ(v.occupancy.at("a-a"), 2);
+  EXPECT_EQ(v.occupancy.at("a-b"), 2);
+  EXPECT_EQ(v.windows.at("a-a"), 2);
+  EXPECT_EQ(v.windows.at("a"), 4);
+  EXPECT_TRUE(v.trainable("b"));
+  EXPECT_FALSE(v.trainable("b-a"));  // one window, five are wanted
+  EXPECT_EQ(trainable_suffix(v, "b-a"), "a");
+}
+
+TEST(ContextTrain, RefusesNoFrames) {
+  EXPECT_THROW(ContextTrain{}({}), std::runtime_error);
+  EXPECT_THROW(ContextTrain{}({{"x", FrameLabels{}}}), std::runtime_error);
+}
+
+TEST(ContextTrain, TakesOneFrame) {
+  const Vlmm v = ContextTrain{}({{"x", stream("a")}});
+  EXPECT_EQ(context_labels(v, {"a", "a"}), (std::vector<std::string>{"a", "a"}));
+}
+
+TEST(ContextDecode, AnswersUnseenPhonesAndTransitionsWithThePhoneAlone) {
+  const Vlmm v = ContextTrain{.order = 2, .prune = 0, .keep = 0}({{"x", stream("aabbaabb")}});
+  const auto labels = ContextDecode{}(v, stream("aaaqbb")).labels;
+  EXPECT_EQ(labels[2], "a");  // aaa was never seen
+  EXPECT_EQ(labels[3], "q");
+  EXPECT_EQ(labels[4], "b");
+  EXPECT_EQ(labels[5], "b-b");
+  EXPECT_TRUE(ContextDecode{}(v, FrameLabels{}).labels.empty());
+}
+
+TEST(ContextSegment, CoversEveryFrameOnce) {
+  Random random(5);
+  Collected<FrameLabels> train;
+  for (int i = 0; i < 6; ++i) train.add(std::to_string(i), stream(random_stream(random, 80, 5)));
+  const Vlmm v = ContextTrain{.order = 4, .prune = 0, .keep = 1e-4, .min_windows = 3}(train);
+  for (const auto states : {StateKind::contexts, StateKind::phones})
+    for (int i = 0; i < 20; ++i) {
+      const auto test = stream(random_stream(random, 1 + i * 3, 6));
+      const auto contexts = ContextDecode{}(v, test);
+      const auto track = ContextSegment{states}(v, contexts);
+      std::int64_t at = 0;
+      for (const auto& s : track.segments) {
+        EXPECT_EQ(s.start, at);
+        EXPECT_GT(s.length, 0);
+        at += s.length;
+        const auto phones = label_phones(s.label);
+        if (states == StateKind::contexts) {
+          ASSERT_EQ(static_cast<std::int64_t>(phones.size()), s.length);
+          for (std::int64_t j = 0; j < s.length; ++j)
+            EXPECT_EQ(phones[static_cast<std::size_t>(j)], test.labels[static_cast<std::size_t>(s.start + j)]);
+        }
+      }
+      EXPECT_EQ(at, static_cast<std::int64_t>(test.labels.size()));
+    }
+  EXPECT_TRUE(ContextSegment{}(v, FrameLabels{}).segments.empty());
+}
+
+// Walking back from the end by hand: c takes a-b-c, then the frame before takes its own.
+TEST(ContextSegment, WalksBackFromTheLastFrame) {
+  Vlmm v;
+  for (const char* label : {"a", "b", "c", "a-b", "a-b-c"}) v.windows[label] = 10;
+  const FrameLabels contexts{{"a", "a-b", "a", "a-b", "a-b-c"}, Rational(25)};
+  const auto track = ContextSegment{}(v, contexts);
+  ASSERT_EQ(track.segments.size(), 2u);
+  EXPECT_EQ(track.segments[0].label, "a-b");
+  EXPECT_EQ(track.segments[1].label, "a-b-c");
+  EXPECT_EQ(track.segments[1].start, 2);
+}
+
+Track ramp(int n, double offset) {
+  Track t;
+  t.values.resize(n, 1);
+  for (int i = 0; i < n; ++i) t.values(i, 0) = offset + i;
+  return t;
+}
+
+TEST(ContextWindows, FindsEveryWindowOfALabel) {
+  const Collected<FrameLabels> labels{{"x", stream("aabaab")}, {"lost", stream("bbb")}};
+  const Collected<Track> audio{{"x", ramp(6, 0)}}, visual{{"x", ramp(5, 100)}};
+  Vlmm v = ContextTrain{.order = 1, .prune = 0, .keep = 0, .min_windows = 1}(labels);
+  auto states = ContextWindows{}(v, labels, audio, visual);
+  std::map<std::string, StateData> by_label;
+  while (auto item = states.next()) by_label[item->key] = item->value;
+  ASSERT_TRUE(by_label.contains("a-b"));
+  // Five frames have all three: a a b a a.
+  ASSERT_EQ(by_label.at("a-b").audio.size(), 1u);
+  EXPECT_EQ(by_label.at("a-b").audio[0], Eigen::Vector2d(1, 2));
+  EXPECT_EQ(by_label.at("a-b").visual[0], Eigen::Vector2d(101, 102));
+  EXPECT_EQ(by_label.at("a-a").audio.size(), 2u);
+  EXPECT_EQ(by_label.at("a").audio.size(), 4u);
+}
+
+TEST(ContextWindows, ThinsOutToTheMostFrames) {
+  const Collected<FrameLabels> labels{{"x", stream(std::string(500, 'a'))}};
+  const Collected<Track> audio{{"x", ramp(500, 0)}};
+  const Vlmm v = ContextTrain{.order = 2, .prune = 0, .keep = 0, .min_windows = 1}(labels);
+  auto states = ContextWindows{.max_frames = 100}(v, labels, audio, audio);
+  while (auto item = states.next()) {
+    std::size_t frames = 0;
+    for (const auto& w : item->value.audio) frames += static_cast<std::size_t>(w.rows());
+    EXPECT_LE(frames, 100u) << item->key;
+    EXPECT_GE(frames, 90u) << item->key;
+    EXPECT_GT(item->value.audio.back()(0, 0), 480) << "windows come from the whole stream";
+  }
+}
+
+TEST(ContextWindows, TakesRunsWithPhonesAsStates) {
+  const Collected<FrameLabels> labels{{"x", stream("aabbbac")}};
+  const Collected<Track> audio{{"x", ramp(7, 0)}};
+  const Vlmm v = ContextTrain{}(labels);
+  auto states = ContextWindows{.states = StateKind::phones}(v, labels, audio, audio);
+  const auto first = states.next();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->key, "a");
+  EXPECT_EQ(first->value.audio.size(), 2u);
+  EXPECT_EQ(first->value.audio[0].rows(), 2);
+}
+
+TEST(ContextWindows, RefusesTracksOfOtherLengths) {
+  const Collected<FrameLabels> labels{{"x", stream("aaaaaaaa")}};
+  const Collected<Track> audio{{"x", ramp(8, 0)}}, visual{{"x", ramp(4, 0)}};
+  const Vlmm v = ContextTrain{}(labels);
+  EXPECT_THROW(ContextWindows{}(v, labels, audio, visual), std::runtime_error);
+  EXPECT_THROW(ContextWindows{}(v, labels, audio, {}), std::runtime_error);
+}
+
+TEST(Vlmm, IsSavedWhole) {
+  const std::string path = testing::TempDir() + "talkgraph_vlmm.h5";
+  Vlmm v = ContextTrain{.order = 3, .prune = 0, .keep = 0}({{"x", stream("aabbabacab")}}), back;
+  (*hdf5_writer(path))("v", v);
+  (*hdf5_reader(path))("v", back);
+  const auto hash = [](Vlmm& x) { return content_hash([&](Archive& ar) { fields(ar, x); }); };
+  EXPECT_EQ(hash(back), hash(v));
+  EXPECT_EQ(back.states.size(), v.states.size());
+  EXPECT_EQ(back.states.back().memory, v.states.back().memory);
+  std::remove(path.c_str());
+}
+
+}  // namespace
+}  // namespace talkgraph

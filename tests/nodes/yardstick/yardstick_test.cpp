@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "nodes/yardstick/mean.h"
+#include "nodes/yardstick/neighbours.h"
+#include "nodes/yardstick/ridge.h"
+
+namespace talkgraph {
+namespace {
+
+Track track(Eigen::MatrixXd values) {
+  Track t;
+  t.values = std::move(values);
+  return t;
+}
+
+TEST(Mean, PredictsTheTrainingMean) {
+  const auto model = MeanTrain{}({{"a", track(Eigen::Vector2d(1, 3))}, {"b", track(Eigen::Matrix<double, 1, 1>(8))}});
+  const Track p = MeanPredict{}(model, track(Eigen::MatrixXd::Zero(5, 2)));
+  EXPECT_EQ(p.values, Eigen::MatrixXd::Constant(5, 1, 4));
+  EXPECT_THROW(MeanTrain{}({}), std::runtime_error);
+}
+
+TEST(Ridge, SolvesThePenalisedNormalEquations) {
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(40, 3), v = Eigen::MatrixXd::Random(40, 2);
+  const auto model = RidgeTrain{.context = 0, .lambda = 0.3}({{"x", track(a)}}, {{"x", track(v)}});
+  // Directly: the offset as a further, unpenalised column.
+  const Eigen::RowVectorXd mean = a.colwise().mean();
+  Eigen::MatrixXd z = a.rowwise() - mean;
+  for (int d = 0; d < 3; ++d) z.col(d) /= std::sqrt(z.col(d).squaredNorm() / 40);
+  Eigen::MatrixXd design(40, 4);
+  design << z, Eigen::VectorXd::Ones(40);
+  Eigen::MatrixXd normal = design.transpose() * design;
+  normal.topLeftCorner(3, 3).diagonal().array() += 0.3 * 40;
+  const Eigen::MatrixXd w = normal.inverse() * design.transpose() * v;
+  EXPECT_TRUE(RidgePredict{}(model, track(a)).values.isApprox(design * w, 1e-10));
+}
+
+TEST(Ridge, SurvivesConstantColumnsAndOneFrame) {
+  const auto model = RidgeTrain{}({{"x", track(Eigen::MatrixXd::Ones(1, 3))}}, {{"x", track(Eigen::MatrixXd::Constant(1, 2, 7))}});
+  const Track p = RidgePredict{}(model, track(Eigen::MatrixXd::Random(4, 3)));
+  EXPECT_TRUE(p.values.isApprox(Eigen::MatrixXd::Constant(4, 2, 7)));
+  EXPECT_THROW(RidgePredict{}(model, track(Eigen::MatrixXd::Random(4, 2))), std::runtime_error);
+  EXPECT_THROW(RidgeTrain{}({}, {}), std::runtime_error);
+  EXPECT_THROW(RidgeTrain{}({{"x", track(Eigen::MatrixXd::Ones(9, 1))}}, {{"x", track(Eigen::MatrixXd::Ones(5, 1))}}), std::runtime_error);
+}
+
+TEST(Neighbours, AgreesWithASearchFrameByFrame) {
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(60, 2), v = Eigen::MatrixXd::Random(60, 3), q = Eigen::MatrixXd::Random(9, 2);
+  const auto model = NeighboursTrain{1}({{"x", track(a)}}, {{"x", track(v)}});
+  const Track p = NeighboursPredict{3}(model, track(q));
+  const Eigen::RowVectorXd mean = a.colwise().mean();
+  const auto z = [&](const Eigen::MatrixXd& m, Eigen::Index t, int d) {
+    const double deviation = std::sqrt((a.col(d).array() - mean[d]).square().mean());
+    return (m(std::clamp<Eigen::Index>(t, 0, m.rows() - 1), d) - mean[d]) / deviation;
+  };
+  for (Eigen::Index t = 0; t < 9; ++t) {
+    std::vector<std::pair<double, Eigen::Index>> order;
+    for (Eigen::Index s = 0; s < 60; ++s) {
+      double sum = 0;
+      for (int i = -1; i <= 1; ++i)
+        for (int d = 0; d < 2; ++d) sum += std::pow(z(q, t + i, d) - z(a, s + i, d), 2);
+      order.emplace_back(sum, s);
+    }
+    std::sort(order.begin(), order.end());
+    const Eigen::RowVectorXd expected = (v.row(order[0].second) + v.row(order[1].second) + v.row(order[2].second)) / 3;
+    EXPECT_TRUE(p.values.row(t).isApprox(expected, 1e-12));
+  }
+}
+
+TEST(Neighbours, TakesAllWhereThereAreFewerThanK) {
+  const auto model = NeighboursTrain{0}({{"x", track(Eigen::Vector2d(0, 1))}}, {{"x", track(Eigen::Vector2d(2, 4))}});
+  EXPECT_EQ(NeighboursPredict{10}(model, track(Eigen::Matrix<double, 1, 1>(0))).values(0, 0), 3);
+}
+
+}  // namespace
+}  // namespace talkgraph
