@@ -149,10 +149,12 @@ void Caller::failed(int n, const std::string& item, std::string cause) {
   check_stopped();
   Failure failure{node(n).name, item, place_of(node(n).place), std::move(cause)};
   books(n).failed += 1;
-  for (auto* o : options_.observers) o->failed(failure);
-  const std::lock_guard lock(mutex_);
-  failures_.push_back(failure);
+  {
+    const std::lock_guard lock(mutex_);
+    failures_.push_back(failure);
+  }
   if (!options_.keep_going) throw RunError(std::move(failure));
+  for (auto* o : options_.observers) o->failed(failure);
 }
 
 std::vector<Value> Caller::call(int n, const std::string& item, std::vector<Input> inputs) {

@@ -5,8 +5,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <exception>
+#include <memory>
 #include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "runtime/executors.h"
 #include "runtime/plan.h"
@@ -17,6 +23,11 @@ namespace {
 namespace flow = tbb::flow;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+template <class T>
+void add_once(std::vector<T>& list, const T& element) {
+  if (std::find(list.begin(), list.end(), element) == list.end()) list.push_back(element);
+}
 
 /// An item of a source on its way. What nodes make for it lies here, one slot a
 /// port, until the last reader has run; only a pointer travels along the edges.
@@ -98,7 +109,7 @@ class FlowRun {
     std::vector<Graph::Port> ports;
     for_each_node(unit, [&](int n) {
       for_each_source(graph_, n, [&](std::size_t, Graph::Port source, Way w) {
-        if (w != Way::item && std::find(ports.begin(), ports.end(), source) == ports.end()) ports.push_back(source);
+        if (w != Way::item) add_once(ports, source);
       });
     });
     return ports;
@@ -107,7 +118,7 @@ class FlowRun {
   std::vector<Graph::Port> item_ports(int n) const {
     std::vector<Graph::Port> ports;
     for_each_source(graph_, n, [&](std::size_t, Graph::Port source, Way w) {
-      if (w == Way::item && std::find(ports.begin(), ports.end(), source) == ports.end()) ports.push_back(source);
+      if (w == Way::item) add_once(ports, source);
     });
     return ports;
   }
@@ -115,9 +126,7 @@ class FlowRun {
   std::vector<int> awaited_nodes(int n) const {
     std::vector<int> nodes;
     for (const auto& p : item_ports(n))
-      if (!node(p.node).type->makes_stream && plan_.unit[at(p.node)] == plan_.unit[at(n)] &&
-          std::find(nodes.begin(), nodes.end(), p.node) == nodes.end())
-        nodes.push_back(p.node);
+      if (!node(p.node).type->makes_stream && plan_.unit[at(p.node)] == plan_.unit[at(n)]) add_once(nodes, p.node);
     return nodes;
   }
 
@@ -168,8 +177,7 @@ class FlowRun {
       else
         build_sweep(u);
       for (const int before : unit.after) {
-        auto& b = plan_.units[at(before)];
-        if (b.domain < 0)
+        if (plan_.units[at(before)].domain < 0)
           flow::make_edge(*starts_[at(before)], *starts_[u]);
         else
           flow::make_edge(flow::output_port<1>(*sweeps_[at(before)].pump), *starts_[u]);

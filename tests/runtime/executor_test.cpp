@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <mutex>
+
 #include "runtime/books.h"
 #include "tests/runtime/graph_builder.h"
 #include "tests/runtime/toy_nodes.h"
@@ -186,6 +188,42 @@ TEST_P(ExecutorTest, AFailureStopsNodesThatAreStillRunning) {
   b_.output("a", b_.add("endless", "toy.endless", {b_.add("c", "toy.constant")}));
   b_.output("b", b_.add("fail", "toy.fail_at", {source}, {{"key", "u3"}}));
   EXPECT_EQ(error().failure.node, "fail");
+}
+
+/// Writes down what a run tells.
+struct Listener : RunObserver {
+  void call_started(int node, const std::string& item) override { note("start", node, item); }
+  void call_ended(int node, const std::string& item) override { note("end", node, item); }
+  void item_done(int node, const std::string& item) override { note("done", node, item); }
+  void log(int node, const std::string& item, std::string_view message) override {
+    note(std::string(message), node, item);
+  }
+  void failed(const Failure&) override { note("failed", -1, ""); }
+  void ended(const RunReport& report) override { error = report.error; }
+  void note(const std::string& what, int node, const std::string& item) {
+    const std::lock_guard lock(mutex);
+    heard.push_back(what + " " + std::to_string(node) + item);
+  }
+  std::mutex mutex;
+  std::vector<std::string> heard;
+  std::string error;
+};
+
+TEST_P(ExecutorTest, ObserversHearOfCallsAndOfTheEnd) {
+  const int source = b_.add("source", "toy.source", {}, {{"to", 1}});
+  b_.output("out", b_.add("fail", "toy.fail_at", {source}, {{"key", "u0"}}));
+  Listener listener;
+  options_.observers = {&listener};
+  options_.keep_going = true;
+  go();
+  EXPECT_THAT(listener.heard,
+              testing::IsSupersetOf({"done 0u0", "start 1u0", "looking 1u0", "end 1u0", "done 1u0", "failed -1"}));
+  EXPECT_EQ(listener.error, "");
+  listener.heard.clear();
+  options_.keep_going = false;
+  EXPECT_THROW(go(), RunError);
+  EXPECT_THAT(listener.heard, testing::Not(testing::Contains("failed -1")));
+  EXPECT_THAT(listener.error, HasSubstr("item \"u0\""));
 }
 
 TEST_P(ExecutorTest, ManyCheapItems) {

@@ -171,6 +171,7 @@ struct FailAt {
   std::string key;
   Mark operator()(const Mark& in, Context& context) const {
     dawdle();
+    context.log("looking");
     if (context.item == key) throw std::runtime_error("the picture is black");
     return in;
   }
