@@ -1,0 +1,17 @@
+#include "nodes/evaluate/register.h"
+
+#include "nodes/evaluate/compare.h"
+#include "nodes/evaluate/mouth_lag.h"
+#include "nodes/evaluate/score.h"
+#include "nodes/evaluate/summary.h"
+
+namespace talkgraph {
+
+void register_evaluate(Registry& registry) {
+  registry.add<Compare>();
+  registry.add<MouthLag>();
+  registry.add<Score>();
+  registry.add<Summary>();
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,62 @@
+#include "nodes/evaluate/score.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace talkgraph {
+namespace {
+
+double deviation(const Eigen::VectorXd& x) { return std::sqrt((x.array() - x.mean()).square().mean()); }
+
+double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  const double product = deviation(a) * deviation(b);
+  if (product < 1e-12) return 0;
+  return ((a.array() - a.mean()) * (b.array() - b.mean())).mean() / product;
+}
+
+/// The rows that count, of the common beginning.
+Eigen::MatrixXd marked(const Eigen::MatrixXd& values, Eigen::Index frames, const Mask* speech) {
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    const auto i = static_cast<std::size_t>(t);
+    if (!speech || (i < speech->frames.size() && speech->frames[i])) rows.push_back(t);
+  }
+  return values(rows, Eigen::all);
+}
+
+}  // namespace
+
+std::optional<Scores> Score::operator()(const Track& truth, const Track& predicted, const Mask* speech) const {
+  if (truth.dimension() != predicted.dimension() || truth.dimension() == 0)
+    throw std::runtime_error("truth has " + std::to_string(truth.dimension()) + " dimensions, the prediction " +
+                             std::to_string(predicted.dimension()));
+  if (std::abs(truth.frames() - predicted.frames()) > 2)
+    throw std::runtime_error("truth has " + std::to_string(truth.frames()) + " frames, the prediction " +
+                             std::to_string(predicted.frames()));
+  const auto frames = std::min(truth.frames(), predicted.frames());
+  const Eigen::MatrixXd z = marked(truth.values, frames, speech), p = marked(predicted.values, frames, speech);
+  if (z.rows() == 0) return {};
+  if (!z.allFinite() || !p.allFinite()) throw std::runtime_error("NaN or infinite values cannot be scored");
+
+  const Eigen::MatrixXd error = (z - p).cwiseAbs();
+  double acc = 0;
+  for (Eigen::Index d = 0; d < z.cols(); ++d) acc += correlation(z.col(d), p.col(d));
+  const double amse = error.array().square().mean(), of_mean = z.array().square().mean();
+  Scores s;
+  s.values["amse"] = amse;
+  s.values["amse_share"] = of_mean > 0 ? amse / of_mean : NAN;
+  s.values["acc"] = acc / static_cast<double>(z.cols());
+  s.values["l1"] = error.mean();
+  s.values["l2"] = std::sqrt(amse);
+  s.values["linf"] = error.rowwise().maxCoeff().mean();
+  const double range = deviation(z.col(0));
+  s.values["range"] = range > 0 ? deviation(p.col(0)) / range : NAN;
+  return s;
+}
+
+void describe(Description<Score>& d) {
+  d.type("evaluate.score").summary("AMSE, ACC and other scores of one sequence").source("Thesis §6.2, Eqns 6.5 to 6.9");
+  d.input("truth", "normalised").input("predicted", "normalised").input("speech", "frames that count").output("scores");
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,56 @@
+#include "nodes/report/files.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace talkgraph {
+namespace {
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
+}  // namespace
+
+void write_whole(const std::filesystem::path& file, std::string_view text) {
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  const std::filesystem::path temporary = file.string() + ".part";
+  std::ofstream out(temporary, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+  std::filesystem::rename(temporary, file);
+}
+
+std::string to_csv(const Table& table) {
+  std::string out = csv_text(table.corner);
+  for (const auto& column : table.columns) out += "," + csv_text(column);
+  out += "\n";
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    out += csv_text(table.rows[r]);
+    for (const double v : table.cells[r]) out += std::isnan(v) ? "," : fmt::format(",{}", v);
+    out += "\n";
+  }
+  return out;
+}
+
+std::string to_json(const Table& table) {
+  nlohmann::ordered_json out = {
+      {"title", table.title}, {"columns", table.columns}, {"rows", nlohmann::ordered_json::object()}};
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    auto& row = out["rows"][table.rows[r]] = nlohmann::ordered_json::object();
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      row[table.columns[c]] = std::isfinite(table.cells[r][c]) ? nlohmann::ordered_json(table.cells[r][c]) : nullptr;
+  }
+  return out.dump(2);
+}
+
+}  // namespace talkgraph

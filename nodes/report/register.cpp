@@ -1,0 +1,13 @@
+#include "nodes/report/register.h"
+
+#include "nodes/report/write.h"
+#include "nodes/report/write_table.h"
+
+namespace talkgraph {
+
+void register_report(Registry& registry) {
+  registry.add<WriteReport>();
+  registry.add<WriteTable>();
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/report.h"
+
+namespace talkgraph {
+
+/// Writes report.html, one page with all tables, plots and clips, which needs
+/// no other file than the clips, each plot as plots/NAME.svg, and metrics.json
+/// with the numbers of all tables.
+struct WriteReport {
+  std::string title = "talkgraph report";
+  std::string notes;  ///< a paragraph under the title
+
+  Artifact operator()(const Collected<Table>& tables, const Collected<Plot>& plots, const Collected<Artifact>& clips,
+                      Context& context) const;
+};
+void describe(Description<WriteReport>& d);
+
+}  // namespace talkgraph

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/report.h"
+
+namespace talkgraph {
+
+/// Writes a table as NAME.csv and NAME.json below the run folder.
+struct WriteTable {
+  std::string name = "table";
+
+  Artifact operator()(const Table& table, Context& context) const;
+};
+void describe(Description<WriteTable>& d);
+
+}  // namespace talkgraph
