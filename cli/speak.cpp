@@ -47,7 +47,7 @@ std::vector<std::string> settings(const SpeakCommand& command) {
   if (!command.base.empty()) {
     sets.push_back(set("nodes.base_video", {{"type", "media.video"}, {"params", {{"file", absolute(command.base)}}}}));
     sets.push_back(
-        set("nodes.base_track", {{"type", "face.track"}, {"in", {{"face", "model.face"}, {"video", "base_video"}}}}));
+        set("nodes.base_track", {{"type", "face.track"}, {"in", {{"model", "model.face"}, {"video", "base_video"}}}}));
     sets.push_back(
         set("nodes.base", {{"type", "face.base_clip"}, {"in", {{"video", "base_video"}, {"track", "base_track"}}}}));
     sets.push_back(set("nodes.composite.in.base", "base"));

@@ -39,7 +39,8 @@ TEST(MeanOf, WeighsRowsAlike) {
   const Collected<Track> all{{"a", track(Eigen::Vector2d(1, 2))}, {"b", track(Eigen::MatrixXd::Constant(1, 1, 6))}};
   EXPECT_EQ(MeanOf{}(all).values(0, 0), 3);
   EXPECT_THROW(MeanOf{}({}), std::runtime_error);
-  EXPECT_THROW(MeanOf{}({{"a", track(Eigen::MatrixXd::Zero(1, 1))}, {"b", track(Eigen::MatrixXd::Zero(1, 2))}}), std::runtime_error);
+  EXPECT_THROW(MeanOf{}({{"a", track(Eigen::MatrixXd::Zero(1, 1))}, {"b", track(Eigen::MatrixXd::Zero(1, 2))}}),
+               std::runtime_error);
 }
 
 }  // namespace

@@ -38,16 +38,19 @@ TEST(Ridge, SolvesThePenalisedNormalEquations) {
 }
 
 TEST(Ridge, SurvivesConstantColumnsAndOneFrame) {
-  const auto model = RidgeTrain{}({{"x", track(Eigen::MatrixXd::Ones(1, 3))}}, {{"x", track(Eigen::MatrixXd::Constant(1, 2, 7))}});
+  const auto model =
+      RidgeTrain{}({{"x", track(Eigen::MatrixXd::Ones(1, 3))}}, {{"x", track(Eigen::MatrixXd::Constant(1, 2, 7))}});
   const Track p = RidgePredict{}(model, track(Eigen::MatrixXd::Random(4, 3)));
   EXPECT_TRUE(p.values.isApprox(Eigen::MatrixXd::Constant(4, 2, 7)));
   EXPECT_THROW(RidgePredict{}(model, track(Eigen::MatrixXd::Random(4, 2))), std::runtime_error);
   EXPECT_THROW(RidgeTrain{}({}, {}), std::runtime_error);
-  EXPECT_THROW(RidgeTrain{}({{"x", track(Eigen::MatrixXd::Ones(9, 1))}}, {{"x", track(Eigen::MatrixXd::Ones(5, 1))}}), std::runtime_error);
+  EXPECT_THROW(RidgeTrain{}({{"x", track(Eigen::MatrixXd::Ones(9, 1))}}, {{"x", track(Eigen::MatrixXd::Ones(5, 1))}}),
+               std::runtime_error);
 }
 
 TEST(Neighbours, AgreesWithASearchFrameByFrame) {
-  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(60, 2), v = Eigen::MatrixXd::Random(60, 3), q = Eigen::MatrixXd::Random(9, 2);
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(60, 2), v = Eigen::MatrixXd::Random(60, 3),
+                        q = Eigen::MatrixXd::Random(9, 2);
   const auto model = NeighboursTrain{1}({{"x", track(a)}}, {{"x", track(v)}});
   const Track p = NeighboursPredict{3}(model, track(q));
   const Eigen::RowVectorXd mean = a.colwise().mean();

@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "graph/random.h"
+#include "nodes/evaluate/compare.h"
+#include "nodes/evaluate/mouth_lag.h"
+#include "nodes/evaluate/score.h"
+#include "nodes/evaluate/summary.h"
+
+namespace talkgraph {
+namespace {
+
+Track track(Eigen::MatrixXd values) {
+  Track t;
+  t.values = std::move(values);
+  return t;
+}
+
+TEST(Score, AgreesWithValuesByHand) {
+  Eigen::MatrixXd z(3, 2), p(3, 2);
+  z << 1, 1, 2, 0, 3, -1;
+  p << 2, 1, 4, 1, 6, 1;
+  auto s = Score{}(track(z), track(p), nullptr)->values;
+  EXPECT_DOUBLE_EQ(s["amse"], (1 + 4 + 9 + 0 + 1 + 4) / 6.0);
+  EXPECT_DOUBLE_EQ(s["amse_share"], s["amse"] / (16 / 6.0));
+  EXPECT_DOUBLE_EQ(s["acc"], 0.5);  // 1 for the first, 0 for the second, which does not vary
+  EXPECT_DOUBLE_EQ(s["l1"], 9 / 6.0);
+  EXPECT_DOUBLE_EQ(s["l2"], std::sqrt(s["amse"]));
+  EXPECT_DOUBLE_EQ(s["linf"], (1 + 2 + 3) / 3.0);
+  EXPECT_DOUBLE_EQ(s["range"], 2);
+}
+
+TEST(Score, OfTheMeanHasShareOne) {
+  const Eigen::MatrixXd z = Eigen::MatrixXd::Random(20, 4);
+  auto s = Score{}(track(z), track(Eigen::MatrixXd::Zero(20, 4)), nullptr)->values;
+  EXPECT_DOUBLE_EQ(s["amse_share"], 1);
+  EXPECT_EQ(s["acc"], 0);
+  s = Score{}(track(z), track(z), nullptr)->values;
+  EXPECT_NEAR(s["acc"], 1, 1e-12);
+  EXPECT_EQ(s["amse"], 0);
+}
+
+TEST(Score, CountsSpeechFramesOnly) {
+  Eigen::MatrixXd z(4, 1), p(4, 1);
+  z << 1, 2, 3, 100;
+  p << 1, 2, 4, 0;
+  const Mask speech{{1, 1, 1, 0}}, silence{{0, 0, 0, 0}};
+  EXPECT_DOUBLE_EQ(Score{}(track(z), track(p), &speech)->values["amse"], 1 / 3.0);
+  EXPECT_FALSE(Score{}(track(z), track(p), &silence));
+}
+
+TEST(Score, RefusesWhatDoesNotFit) {
+  const auto zeros = [](int r, int c) { return track(Eigen::MatrixXd::Zero(r, c)); };
+  EXPECT_NO_THROW(Score{}(zeros(10, 2), zeros(12, 2), nullptr));
+  EXPECT_THROW(Score{}(zeros(10, 2), zeros(13, 2), nullptr), std::runtime_error);
+  EXPECT_THROW(Score{}(zeros(10, 2), zeros(10, 3), nullptr), std::runtime_error);
+  Track broken = zeros(10, 2);
+  broken.values(3, 1) = NAN;
+  EXPECT_THROW(Score{}(zeros(10, 2), broken, nullptr), std::runtime_error);
+}
+
+TEST(Summary, GivesMeanAndSampleDeviation) {
+  const Table t = Summary{{"acc"}}({{"a", {{{"acc", 1}}}}, {"b", {{{"acc", 3}}}}, {"c", {{{"acc", NAN}}}}});
+  EXPECT_EQ(t.columns, (std::vector<std::string>{"acc", "acc std", "sequences"}));
+  EXPECT_EQ(t.cells[0][0], 2);
+  EXPECT_DOUBLE_EQ(t.cells[0][1], std::sqrt(2.0));
+  EXPECT_EQ(t.cells[0][2], 3);
+  EXPECT_TRUE(std::isnan(Summary{}({}).cells[0][0]));
+}
+
+TEST(Compare, StacksRowsUnderTheirNames) {
+  Table a = Summary{{"acc"}}({{"x", {{{"acc", 1}}}}}), b = Summary{{"acc"}}({{"x", {{{"acc", 2}}}}});
+  const Table t = Compare{}({{"ridge", a}, {"SSGPDM", b}});
+  EXPECT_EQ(t.rows, (std::vector<std::string>{"ridge", "SSGPDM"}));
+  EXPECT_EQ(t.cells[1][0], 2);
+  b.columns[0] = "other";
+  EXPECT_THROW(Compare{}({{"ridge", a}, {"SSGPDM", b}}), std::runtime_error);
+}
+
+// A mouth that opens with the loudness of the sound, `late` frames later.
+Scores lag_of(int late) {
+  Random random(2);
+  std::vector<double> loudness(100);
+  for (std::size_t t = 0; t < loudness.size(); ++t)
+    loudness[t] = t ? 0.6 * loudness[t - 1] + 0.4 * random.uniform() : 0.5;
+  Audio audio;
+  audio.rate = 1000;
+  audio.samples.resize(4000);
+  for (Eigen::Index i = 0; i < 4000; ++i)
+    audio.samples[i] = std::pow(10, 2 * loudness[static_cast<std::size_t>(i / 40)] - 3) * (i % 2 ? 1 : -1);
+  LandmarkTrack landmarks;
+  for (int t = 0; t < 100; ++t) {
+    Shape shape = Shape::Zero(68, 2);
+    shape(66, 1) = 10 * loudness[static_cast<std::size_t>(std::clamp(t - late, 0, 99))];
+    landmarks.frames.push_back(shape);
+  }
+  return *MouthLag{}(landmarks, audio);
+}
+
+TEST(MouthLag, FindsHowLateTheMouthIs) {
+  for (const int late : {-3, 0, 2}) {
+    auto s = lag_of(late).values;
+    EXPECT_EQ(s["lag"], late);
+    EXPECT_GT(s["correlation"], 0.99);
+  }
+}
+
+TEST(MouthLag, SaysNothingOfAStillMouthAndRefusesOtherSchemes) {
+  Audio audio;
+  audio.samples = Eigen::VectorXd::Random(16000);
+  LandmarkTrack still;
+  still.frames.assign(25, Shape::Zero(68, 2));
+  EXPECT_FALSE(MouthLag{}(still, audio));
+  still.frames.resize(1);
+  EXPECT_FALSE(MouthLag{}(still, audio));
+  still.frames.assign(25, Shape::Zero(20, 2));
+  EXPECT_THROW(MouthLag{}(still, audio), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace talkgraph

@@ -1,0 +1,63 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "nodes/report/files.h"
+#include "nodes/report/write.h"
+#include "nodes/report/write_table.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::HasSubstr;
+
+class Report : public testing::Test {
+ protected:
+  void SetUp() override {
+    context.folder = std::filesystem::path(testing::TempDir()) / "talkgraph_report";
+    std::filesystem::create_directories(context.folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(context.folder); }
+  std::string read(const std::string& name) {
+    std::ifstream in(context.folder / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  Context context;
+  Table table{"scores", "method", {"acc", "n"}, {"a, \"b\"", "c"}, {{0.5, 3}, {NAN, 4}}};
+};
+
+TEST_F(Report, WritesTablesAsCsvAndJson) {
+  EXPECT_EQ((WriteTable{"t"}(table, context)).path, "t.csv");
+  EXPECT_EQ(read("t.csv"), "method,acc,n\n\"a, \"\"b\"\"\",0.5,3\nc,,4\n");
+  const Json json = Json::parse(read("t.json"));
+  EXPECT_EQ(json["rows"]["c"]["n"], 4);
+  EXPECT_TRUE(json["rows"]["c"]["acc"].is_null());
+}
+
+TEST_F(Report, WritesOnePageWithEverything) {
+  WriteReport{"A <title>", "notes"}({{"scores", table}}, {{"p", {"plot", "<svg></svg>"}}},
+                                    {{"s1", {"clips/s1.mp4", "clip"}}}, context);
+  const std::string page = read("report.html");
+  EXPECT_THAT(page, HasSubstr("<h1>A &lt;title&gt;</h1>"));
+  EXPECT_THAT(page, HasSubstr("<td>0.5</td>"));
+  EXPECT_THAT(page, HasSubstr("<svg></svg>"));
+  EXPECT_THAT(page, HasSubstr("src=\"clips/s1.mp4\""));
+  EXPECT_EQ(read("plots/p.svg"), "<svg></svg>");
+  EXPECT_EQ(Json::parse(read("metrics.json"))["scores"]["rows"]["c"]["n"], 4);
+}
+
+TEST_F(Report, SaysWhichFileCannotBeWritten) {
+  std::ofstream(context.folder / "file") << "x";
+  try {
+    write_whole(context.folder / "file" / "t.csv", "x");
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("t.csv: cannot be written"));
+  }
+}
+
+}  // namespace
+}  // namespace talkgraph
