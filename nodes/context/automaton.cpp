@@ -1,71 +1,78 @@
 #include "nodes/context/automaton.h"
 
 #include <algorithm>
-#include <map>
+
+#include "nodes/phones/visemes.h"
 
 namespace talkgraph {
 namespace {
 
-using Symbols = std::vector<std::int64_t>;
+constexpr int kNoViseme = -1;
 
-/// The state of the longest suffix; the empty memory is a suffix of all.
-class SuffixStates {
- public:
-  explicit SuffixStates(const Vlmm& vlmm) {
-    for (std::size_t i = 0; i < vlmm.states.size(); ++i) index_[vlmm.states[i].memory] = static_cast<std::int64_t>(i);
-  }
-  std::int64_t longest(const Symbols& string) const {
-    for (auto from = string.begin();; ++from)
-      if (const auto it = index_.find(Symbols(from, string.end())); it != index_.end()) return it->second;
-  }
+int viseme_of(const std::string& phone) {
+  if (phone == "sil" || phone == "breath") return 0;
+  for (const auto& entry : kVisemes)
+    if (entry.phone == phone) return entry.viseme;
+  return kNoViseme;
+}
 
- private:
-  std::map<Symbols, std::int64_t> index_;
-};
+/// Index in the sorted alphabet, -1 for an unknown phone.
+std::int64_t symbol(const Vlmm& vlmm, const std::string& phone) {
+  const auto it = std::lower_bound(vlmm.alphabet.begin(), vlmm.alphabet.end(), phone);
+  return it != vlmm.alphabet.end() && *it == phone ? it - vlmm.alphabet.begin() : -1;
+}
 
 }  // namespace
 
-void connect_states(Vlmm& vlmm) {
-  const SuffixStates states(vlmm);
-  for (auto& state : vlmm.states) {
-    state.next.assign(vlmm.alphabet.size(), -1);
-    Symbols longer = state.memory;
-    longer.push_back(0);
-    for (std::size_t s = 0; s < vlmm.alphabet.size(); ++s) {
-      longer.back() = static_cast<std::int64_t>(s);
-      if (state.probability[s] > 0) state.next[s] = states.longest(longer);
-    }
+std::vector<Unit> units(const std::vector<std::string>& phones, bool runs) {
+  std::vector<Unit> all;
+  for (std::size_t t = 0; t < phones.size(); ++t) {
+    if (runs && !all.empty() && all.back().phone == phones[t])
+      ++all.back().length;
+    else
+      all.push_back({phones[t], static_cast<std::int64_t>(t), 1});
   }
+  return all;
 }
 
-std::vector<std::string> context_labels(const Vlmm& vlmm, const std::vector<std::string>& phones) {
-  const auto index = [&](const std::string& phone) -> std::int64_t {
-    const auto it = std::lower_bound(vlmm.alphabet.begin(), vlmm.alphabet.end(), phone);
-    return it != vlmm.alphabet.end() && *it == phone ? it - vlmm.alphabet.begin() : -1;
-  };
-  std::vector<std::string> labels;
-  std::size_t state = 0;  // the empty memory
-  for (const auto& phone : phones) {
-    const auto symbol = index(phone);
-    auto next = symbol < 0 ? -1 : vlmm.states[state].next[static_cast<std::size_t>(symbol)];
-    std::string label;
-    if (next >= 0)
-      for (const auto s : vlmm.states[state].memory) label += vlmm.alphabet[static_cast<std::size_t>(s)] + "-";
-    labels.push_back(label + phone);
-    if (next < 0 && symbol >= 0) next = vlmm.states[0].next[static_cast<std::size_t>(symbol)];
-    state = static_cast<std::size_t>(std::max<std::int64_t>(next, 0));
+AutomatonReader::Step AutomatonReader::read(const std::string& phone) {
+  const auto s = symbol(vlmm_, phone);
+  if (s < 0) {
+    state_ = 0;
+    return {phone, 0};
   }
-  return labels;
+  const auto at = static_cast<std::size_t>(s);
+  const auto& before = vlmm_.states[state_];
+  Step step{phone, 0};
+  auto next = before.next[at];
+  if (next >= 0) {
+    std::string memory;
+    for (const auto m : before.memory) memory += vlmm_.alphabet[static_cast<std::size_t>(m)] + "-";
+    step = {memory + phone, before.probability[at]};
+  } else {
+    next = vlmm_.states[0].next[at];
+  }
+  state_ = static_cast<std::size_t>(std::max<std::int64_t>(next, 0));
+  return step;
 }
 
-std::string trainable_suffix(const Vlmm& vlmm, const std::string& label) {
-  std::string suffix = label;
+std::string state_label(const Vlmm& vlmm, const std::string& context) {
+  std::string suffix = context;
   while (!vlmm.trainable(suffix)) {
     const auto dash = suffix.find('-');
     if (dash == std::string::npos) break;
     suffix.erase(0, dash + 1);
   }
-  return suffix;
+  if (vlmm.trainable(suffix)) return suffix;
+  const int wanted = viseme_of(suffix);
+  std::int64_t most = 0;
+  std::string alike = suffix;
+  for (const auto& phone : vlmm.alphabet) {
+    if (wanted == kNoViseme || viseme_of(phone) != wanted || vlmm.windows.at(phone) <= most) continue;
+    most = vlmm.windows.at(phone);
+    alike = phone;
+  }
+  return alike;
 }
 
 }  // namespace talkgraph

@@ -5,7 +5,12 @@
 namespace talkgraph {
 
 FrameLabels ContextDecode::operator()(const Vlmm& vlmm, const FrameLabels& labels) const {
-  return {context_labels(vlmm, labels.labels), labels.rate};
+  FrameLabels contexts;
+  contexts.rate = labels.rate;
+  AutomatonReader reader(vlmm);
+  for (const auto& unit : units(labels.labels, !vlmm.repeating))
+    contexts.labels.insert(contexts.labels.end(), static_cast<std::size_t>(unit.length), reader.read(unit.phone).label);
+  return contexts;
 }
 
 void describe(Description<ContextDecode>& d) {

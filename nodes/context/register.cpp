@@ -1,6 +1,7 @@
 #include "nodes/context/register.h"
 
 #include "nodes/context/decode.h"
+#include "nodes/context/perplexity.h"
 #include "nodes/context/segment.h"
 #include "nodes/context/train.h"
 #include "nodes/context/windows.h"
@@ -9,6 +10,7 @@ namespace talkgraph {
 
 void register_context(Registry& registry) {
   registry.add<ContextDecode>();
+  registry.add<ContextPerplexity>();
   registry.add<ContextSegment>();
   registry.add<ContextTrain>();
   registry.add<ContextWindows>();

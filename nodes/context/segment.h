@@ -16,11 +16,13 @@ template <>
 inline constexpr EnumNames<StateKind, 2> enum_names<StateKind>{
     {{StateKind::contexts, "contexts"}, {StateKind::phones, "phones"}}};
 
-/// Cuts a stream of context labels into segments that do not overlap (spec §5,
-/// thesis Algorithm 4): labels too thin to train become their longest trainable
-/// suffix; then, from the last frame backwards, each label takes as many frames
-/// as it has phones, fewer at the beginning of the stream. With phones as
-/// states, segments are the runs of each phone.
+/// Cuts a stream of context labels into segments that do not overlap and cover
+/// every frame (spec §5, thesis Algorithm 4). From the last frame backwards,
+/// the context there becomes its longest trainable suffix, which takes as many
+/// frames as it has phones (runs of frames, with a model of runs). At the first
+/// frame a label that is too long loses its oldest phones. A phone unknown to
+/// the model becomes the commonest of its viseme. With phones as states,
+/// segments are the runs of each phone.
 struct ContextSegment {
   StateKind states = StateKind::contexts;
 

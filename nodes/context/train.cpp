@@ -2,70 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
+#include <numeric>
 #include <set>
 #include <stdexcept>
-#include <unordered_map>
 
 #include "nodes/context/automaton.h"
+#include "nodes/context/prefix_tree.h"
 
 namespace talkgraph {
 namespace {
 
 using Symbols = std::vector<std::int64_t>;
-
-/// Counts of all strings up to a length in a set of streams.
-class PrefixTree {
- public:
-  explicit PrefixTree(std::size_t symbols) : symbols_(symbols), counts_(1, 0) {}
-
-  void add(const Symbols& stream, std::size_t longest) {
-    for (std::size_t start = 0; start < stream.size(); ++start) {
-      ++counts_[0];
-      std::int64_t node = 0;
-      for (std::size_t i = start; i < std::min(stream.size(), start + longest); ++i) {
-        node = child(node, stream[i]);
-        ++counts_[static_cast<std::size_t>(node)];
-      }
-    }
-  }
-  /// Of the empty string: all frames.
-  std::int64_t count(const Symbols& string) const {
-    std::int64_t node = 0;
-    for (const auto s : string) {
-      const auto it = children_.find(key(node, s));
-      if (it == children_.end()) return 0;
-      node = it->second;
-    }
-    return counts_[static_cast<std::size_t>(node)];
-  }
-  /// p(σ | string) for every σ; all zero if nothing ever followed.
-  std::vector<double> next(const Symbols& string) const {
-    std::vector<double> p(symbols_);
-    Symbols longer = string;
-    longer.push_back(0);
-    double sum = 0;
-    for (std::size_t s = 0; s < symbols_; ++s) {
-      longer.back() = static_cast<std::int64_t>(s);
-      sum += p[s] = static_cast<double>(count(longer));
-    }
-    if (sum > 0)
-      for (auto& x : p) x /= sum;
-    return p;
-  }
-
- private:
-  std::int64_t key(std::int64_t node, std::int64_t s) const { return node * static_cast<std::int64_t>(symbols_) + s; }
-  std::int64_t child(std::int64_t node, std::int64_t s) {
-    const auto [it, fresh] = children_.try_emplace(key(node, s), static_cast<std::int64_t>(counts_.size()));
-    if (fresh) counts_.push_back(0);
-    return it->second;
-  }
-
-  std::size_t symbols_;
-  std::vector<std::int64_t> counts_;
-  std::unordered_map<std::int64_t, std::int64_t> children_;
-};
 
 /// Σ p ln(p / q) over the symbols seen after the longer memory.
 double divergence(const std::vector<double>& p, const std::vector<double>& q) {
@@ -75,81 +22,141 @@ double divergence(const std::vector<double>& p, const std::vector<double>& q) {
   return sum;
 }
 
-/// The memories worth keeping, closed under taking suffixes.
-std::set<Symbols> memories(const PrefixTree& tree, std::size_t symbols, const ContextTrain& node) {
-  const auto total = static_cast<double>(tree.count({}));
-  std::set<Symbols> kept = {{}};
-  std::deque<Symbols> candidates;
-  const auto extend = [&](const Symbols& w) {
-    Symbols longer(1);
-    longer.insert(longer.end(), w.begin(), w.end());
-    for (std::size_t s = 0; s < symbols; ++s) {
-      longer[0] = static_cast<std::int64_t>(s);
-      if (static_cast<double>(tree.count(longer)) / total > node.prune) candidates.push_back(longer);
-    }
-  };
-  extend({});
-  for (; !candidates.empty(); candidates.pop_front()) {
-    const Symbols& w = candidates.front();
-    const Symbols suffix(w.begin() + 1, w.end());
-    const double share = static_cast<double>(tree.count(w)) / total;
-    if (share * divergence(tree.next(w), tree.next(suffix)) >= node.keep)
-      for (auto from = w.begin(); from != w.end(); ++from) kept.insert(Symbols(from, w.end()));
-    if (static_cast<int>(w.size()) < node.order) extend(Symbols(w));
+/// The memories worth keeping and the automaton of them.
+class Learner {
+ public:
+  Learner(const PrefixTree& tree, std::size_t symbols, double prune, double keep)
+      : tree_(tree), symbols_(symbols), total_(static_cast<double>(tree[0].count)), prune_(prune), keep_(keep) {}
+
+  std::vector<Vlmm::State> states(int order) {
+    state_.assign(tree_.nodes().size(), -1);
+    state_[0] = 0;
+    for (int node = 1; node < static_cast<int>(tree_.nodes().size()); ++node)
+      if (tree_[node].length <= order && survives(node) && gain(node) >= keep_)
+        for (int n = node; n > 0; n = tree_[n].suffix) state_[static_cast<std::size_t>(n)] = 0;
+    return connected(sorted_memories());
   }
-  return kept;
+
+ private:
+  double share(int node) const { return static_cast<double>(tree_[node].count) / total_; }
+  bool survives(int node) const { return share(node) > prune_; }
+
+  /// p(σ | string of the node) over the branches not pruned; all zero if none is left.
+  std::vector<double> next(int node) const {
+    std::vector<double> p(symbols_);
+    double sum = 0;
+    for (int c = tree_[node].first_child; c >= 0; c = tree_[c].sibling)
+      if (survives(c)) sum += p[static_cast<std::size_t>(tree_[c].symbol)] = static_cast<double>(tree_[c].count);
+    if (sum > 0)
+      for (auto& x : p) x /= sum;
+    return p;
+  }
+  double gain(int node) const { return share(node) * divergence(next(node), next(tree_[node].suffix)); }
+
+  std::vector<int> sorted_memories() const {
+    std::vector<std::pair<Symbols, int>> memories;
+    for (std::size_t node = 0; node < state_.size(); ++node)
+      if (state_[node] >= 0) memories.emplace_back(tree_.string(static_cast<int>(node)), static_cast<int>(node));
+    std::sort(memories.begin(), memories.end());
+    std::vector<int> nodes;
+    for (const auto& memory : memories) nodes.push_back(memory.second);
+    return nodes;
+  }
+  std::vector<Vlmm::State> connected(const std::vector<int>& nodes) {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      state_[static_cast<std::size_t>(nodes[i])] = static_cast<std::int64_t>(i);
+    std::vector<Vlmm::State> states;
+    for (const int node : nodes) {
+      Vlmm::State state{tree_.string(node), next(node), Symbols(symbols_, -1)};
+      for (int c = tree_[node].first_child; c >= 0; c = tree_[c].sibling) {
+        if (!survives(c)) continue;
+        int longest = c;
+        while (state_[static_cast<std::size_t>(longest)] < 0) longest = tree_[longest].suffix;
+        state.next[static_cast<std::size_t>(tree_[c].symbol)] = state_[static_cast<std::size_t>(longest)];
+      }
+      states.push_back(std::move(state));
+    }
+    return states;
+  }
+
+  const PrefixTree& tree_;
+  std::size_t symbols_;
+  double total_, prune_, keep_;
+  std::vector<std::int64_t> state_;  // of each node of the tree, -1 if its string is no memory
+};
+
+/// Training streams as units, and as indices into the alphabet.
+struct Streams {
+  std::vector<std::string> alphabet;
+  std::vector<std::vector<Unit>> units;
+  std::vector<Symbols> symbols;
+};
+
+Streams read(const Collected<FrameLabels>& labels, bool runs) {
+  Streams streams;
+  std::set<std::string> phones;
+  for (std::size_t i = 0; i < labels.size(); ++i) phones.insert(labels[i].labels.begin(), labels[i].labels.end());
+  if (phones.empty())
+    throw std::runtime_error("contexts cannot be learnt from no frame: is the training selection empty?");
+  for (const auto& phone : phones)
+    if (phone.empty() || phone.find('-') != std::string::npos)
+      throw std::runtime_error("\"" + phone + "\" cannot be a phone: '-' joins the phones of a context");
+  streams.alphabet.assign(phones.begin(), phones.end());
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    streams.units.push_back(units(labels[i].labels, runs));
+    Symbols symbols;
+    for (const auto& unit : streams.units.back())
+      symbols.push_back(std::lower_bound(streams.alphabet.begin(), streams.alphabet.end(), unit.phone) -
+                        streams.alphabet.begin());
+    streams.symbols.push_back(std::move(symbols));
+  }
+  return streams;
+}
+
+std::int64_t windows_of(const PrefixTree& tree, const Vlmm& v, const std::vector<std::string>& phones,
+                        std::size_t from) {
+  int node = 0;
+  for (std::size_t i = from; i < phones.size() && node >= 0; ++i)
+    node = tree.child(node, std::lower_bound(v.alphabet.begin(), v.alphabet.end(), phones[i]) - v.alphabet.begin());
+  return node < 0 ? 0 : tree[node].count;
 }
 
 }  // namespace
 
 Vlmm ContextTrain::operator()(const Collected<FrameLabels>& labels) const {
-  std::set<std::string> phones;
-  for (std::size_t i = 0; i < labels.size(); ++i) phones.insert(labels[i].labels.begin(), labels[i].labels.end());
-  if (phones.empty())
-    throw std::runtime_error("contexts cannot be learnt from no frame: is the training selection empty?");
+  const Streams streams = read(labels, !repeating);
+  PrefixTree tree(order + 1);
+  for (const auto& stream : streams.symbols) tree.add(stream);
 
   Vlmm v;
   v.order = order;
-  v.min_windows = min_windows;
-  v.alphabet.assign(phones.begin(), phones.end());
-  const auto symbol = [&](const std::string& phone) {
-    return std::lower_bound(v.alphabet.begin(), v.alphabet.end(), phone) - v.alphabet.begin();
-  };
-  PrefixTree tree(v.alphabet.size());
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    Symbols stream;
-    for (const auto& phone : labels[i].labels) stream.push_back(symbol(phone));
-    tree.add(stream, static_cast<std::size_t>(order) + 1);
+  v.repeating = repeating;
+  v.alphabet = streams.alphabet;
+  v.states = Learner(tree, v.alphabet.size(), prune, keep).states(order);
+  for (const auto& stream : streams.units) {
+    AutomatonReader reader(v);
+    for (const auto& unit : stream) v.occupancy[reader.read(unit.phone).label] += unit.length;
   }
-  for (const auto& memory : memories(tree, v.alphabet.size(), *this))
-    v.states.push_back({memory, tree.next(memory), {}});
-  connect_states(v);
-
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    for (auto& label : context_labels(v, labels[i].labels)) ++v.occupancy[label];
-  for (const auto& phone : v.alphabet) v.occupancy.try_emplace(phone, 0);
-  // Windows of a label and of the suffixes it may be mapped to.
-  for (const auto& [label, count] : v.occupancy) {
-    const auto parts = label_phones(label);
-    Symbols string;
-    for (const auto& phone : parts) string.push_back(symbol(phone));
-    for (std::size_t from = 0; from < parts.size(); ++from)
-      v.windows[join_phones(parts, from, parts.size())] =
-          tree.count(Symbols(string.begin() + static_cast<std::ptrdiff_t>(from), string.end()));
+  for (const auto& phone : v.alphabet) v.windows[phone] = windows_of(tree, v, {phone}, 0);
+  for (const auto& [label, frames] : v.occupancy) {
+    const auto phones = label_phones(label);
+    for (std::size_t from = 0; from < phones.size(); ++from) {
+      const auto count = windows_of(tree, v, phones, from);
+      if (count < min_windows) continue;
+      v.windows[join_phones(phones, from, phones.size())] = count;
+      break;
+    }
   }
   return v;
 }
 
 void describe(Description<ContextTrain>& d) {
-  d.type("context.train")
-      .summary("learns phonetic contexts: a variable length Markov model of phones per frame")
-      .stored();
+  d.type("context.train").version(1).stored();
+  d.summary("learns phonetic contexts: a variable length Markov model of phones");
   d.source("Thesis §5.2.1, Algorithm 3");
   d.input("labels", "phones at the video rate").output("vlmm");
-  d.param("order", &ContextTrain::order).within(0, 50).unit("frames").doc("longest memory");
-  d.param("prune", &ContextTrain::prune)
-      .within(0, 1)
-      .doc("strings in at most this share of the frames are not looked at");
+  d.param("order", &ContextTrain::order).within(0, 50).unit("phones").doc("longest memory");
+  d.param("prune", &ContextTrain::prune).within(0, 1).doc("strings in at most this share of the stream are pruned");
   d.param("keep", &ContextTrain::keep)
       .at_least(0)
       .unit("nats")
@@ -157,6 +164,7 @@ void describe(Description<ContextTrain>& d) {
   d.param("min_windows", &ContextTrain::min_windows)
       .at_least(1)
       .doc("labels with fewer training windows are mapped to a suffix");
+  d.param("repeating", &ContextTrain::repeating).doc("a symbol a frame; false: a symbol a run of equal frames");
 }
 
 }  // namespace talkgraph

@@ -7,16 +7,24 @@
 namespace talkgraph {
 
 /// Learns a variable length Markov model from phone-per-frame streams (spec §5,
-/// thesis §5.2.1, Algorithm 3). A memory w with |w| ≤ order is kept if it
-/// predicts the next phone better than its suffix does,
-///   ΔH(σw, w) = p(σw) Σ_σ' p(σ'|σw) ln(p(σ'|σw) / p(σ'|w)) ≥ keep;
-/// strings seen in a share of at most `prune` of the frames are not looked at.
-/// Every phone is an alphabet symbol. Throws std::runtime_error if there is no frame.
+/// thesis §5.2.1, Algorithm 3).
+///
+/// Strings of up to order + 1 phones are counted; those in a share of at most
+/// `prune` of the symbols are pruned, so that nothing leads to them. A memory
+/// σw, |σw| ≤ order, is kept with all its suffixes if it predicts the next
+/// phone better than w does,
+///   ΔH(σw, w) = p(σw) Σ_σ' p(σ'|σw) ln(p(σ'|σw) / p(σ'|w)) ≥ keep,
+/// and on a phone σ it leads to the longest kept suffix of wσ.
+///
+/// Trainable are the longest suffix with at least `min_windows` windows of each
+/// label met in training, and every phone. Throws std::runtime_error if there
+/// is no frame, or a label holds '-'.
 struct ContextTrain {
-  int order = 6;        ///< N, longest memory, frames
-  double prune = 1e-4;  ///< ε_p
-  double keep = 1e-5;   ///< ε_s, nats
-  int min_windows = 5;  ///< labels with fewer training windows are mapped to a suffix
+  int order = 6;          ///< N, longest memory, symbols
+  double prune = 1e-4;    ///< ε_p
+  double keep = 1e-5;     ///< ε_s, nats
+  int min_windows = 5;    ///< rarer labels are mapped to a suffix
+  bool repeating = true;  ///< a symbol a frame; false: a symbol a run of equal frames
 
   Vlmm operator()(const Collected<FrameLabels>& labels) const;
 };

@@ -1,9 +1,8 @@
 #include "nodes/context/windows.h"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <memory>
-#include <set>
 #include <stdexcept>
 
 #include "nodes/context/automaton.h"
@@ -18,7 +17,7 @@ struct Window {
 };
 
 struct Sequence {
-  std::vector<std::string> phones;
+  std::vector<Unit> units;
   const Track* audio;
   const Track* visual;
 };
@@ -30,70 +29,71 @@ struct State {
 };
 
 std::vector<Sequence> pair_up(const Collected<FrameLabels>& labels, const Collected<Track>& audio,
-                              const Collected<Track>& visual) {
+                              const Collected<Track>& visual, bool runs) {
   std::vector<Sequence> sequences;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const Track* a = audio.find(labels.key(i));
     const Track* v = visual.find(labels.key(i));
     if (!a || !v) continue;
-    const auto n = static_cast<Eigen::Index>(labels[i].labels.size());
+    const auto& phones = labels[i].labels;
+    const auto n = static_cast<Eigen::Index>(phones.size());
     const auto [shortest, longest] = std::minmax({n, a->frames(), v->frames()});
     if (longest - shortest > 2)
       throw std::runtime_error(labels.key(i) + ": " + std::to_string(n) + " labels, " + std::to_string(a->frames()) +
-                               " audio frames, " + std::to_string(v->frames()) + " visual frames");
-    sequences.push_back({{labels[i].labels.begin(), labels[i].labels.begin() + shortest}, a, v});
+                               " audio frames, " + std::to_string(v->frames()) +
+                               " visual frames; bring all to one rate");
+    sequences.push_back({units({phones.begin(), phones.begin() + shortest}, runs), a, v});
   }
   if (sequences.empty())
     throw std::runtime_error("no training sequence has labels, sound and face: is the selection empty?");
   return sequences;
 }
 
-void add_context_windows(const Vlmm& vlmm, const std::vector<Sequence>& sequences,
-                         std::map<std::string, State>& states) {
-  for (const auto& [label, count] : vlmm.occupancy) states[trainable_suffix(vlmm, label)];
-  std::size_t longest = 1;
+/// The states of the model, without windows.
+std::map<std::string, State> states_of(const Vlmm& vlmm, StateKind kind) {
+  std::map<std::string, State> states;
+  if (kind == StateKind::contexts)
+    for (const auto& [label, count] : vlmm.windows) states[label];
+  else
+    for (const auto& phone : vlmm.alphabet) states[phone];
+  return states;
+}
+
+/// Every stretch of units that equals a label.
+void add_windows(const std::vector<Sequence>& sequences, std::map<std::string, State>& states) {
+  std::size_t longest = 0;
   for (const auto& [label, state] : states) longest = std::max(longest, label_phones(label).size());
   for (std::size_t s = 0; s < sequences.size(); ++s) {
-    const auto& phones = sequences[s].phones;
-    for (std::size_t end = 1; end <= phones.size(); ++end) {
+    const auto& parts = sequences[s].units;
+    for (std::size_t end = 1; end <= parts.size(); ++end) {
       std::string label;
-      for (std::size_t start = end; start > 0 && end - start < longest; --start) {
-        label = phones[start - 1] + (label.empty() ? "" : "-") + label;
+      const auto stop = parts[end - 1].start + parts[end - 1].length;
+      for (std::size_t first = end; first > 0 && end - first < longest; --first) {
+        const Unit& oldest = parts[first - 1];
+        label = oldest.phone + (label.empty() ? "" : "-") + label;
         if (const auto it = states.find(label); it != states.end())
-          it->second.windows.push_back(
-              {s, static_cast<Eigen::Index>(start - 1), static_cast<Eigen::Index>(end - start + 1)});
+          it->second.windows.push_back({s, oldest.start, stop - oldest.start});
       }
     }
   }
 }
 
-void add_phone_runs(const std::vector<Sequence>& sequences, std::map<std::string, State>& states) {
-  for (std::size_t s = 0; s < sequences.size(); ++s) {
-    const auto& phones = sequences[s].phones;
-    for (std::size_t start = 0, end = 0; start < phones.size(); start = end) {
-      while (end < phones.size() && phones[end] == phones[start]) ++end;
-      states[phones[start]].windows.push_back(
-          {s, static_cast<Eigen::Index>(start), static_cast<Eigen::Index>(end - start)});
-    }
-  }
-}
-
-/// Keeps windows spread evenly over all until they hold no more than `most` frames.
+/// Keeps windows spread evenly over all so that they hold at most `most`
+/// frames, and at least one window.
 void thin_out(State& state, Eigen::Index most) {
   for (const auto& w : state.windows) state.frames += w.length;
   if (state.frames <= most) return;
-  const double kept = static_cast<double>(most) / static_cast<double>(state.frames);
+  const auto count = static_cast<Eigen::Index>(state.windows.size());
+  const auto kept = std::max<Eigen::Index>(1, count * most / state.frames);
   std::vector<Window> thinned;
-  Eigen::Index frames = 0;
-  for (std::size_t i = 0; i < state.windows.size(); ++i) {
-    const auto& w = state.windows[i];
-    const auto due = std::floor(static_cast<double>(i + 1) * kept) > std::floor(static_cast<double>(i) * kept);
-    if ((!due || frames + w.length > most) && !thinned.empty()) continue;
+  state.frames = 0;
+  for (Eigen::Index i = 0; i < kept; ++i) {
+    const auto& w = state.windows[static_cast<std::size_t>((2 * i + 1) * count / (2 * kept))];
+    if (!thinned.empty() && state.frames + w.length > most) break;
     thinned.push_back(w);
-    frames += w.length;
+    state.frames += w.length;
   }
   state.windows = std::move(thinned);
-  state.frames = frames;
 }
 
 StateData cut(const State& state, const std::vector<Sequence>& sequences) {
@@ -110,12 +110,10 @@ StateData cut(const State& state, const std::vector<Sequence>& sequences) {
 
 Stream<StateData> ContextWindows::operator()(const Vlmm& vlmm, const Collected<FrameLabels>& labels,
                                              const Collected<Track>& audio, const Collected<Track>& visual) const {
-  auto sequences = std::make_shared<const std::vector<Sequence>>(pair_up(labels, audio, visual));
-  std::map<std::string, State> by_label;
-  if (states == StateKind::contexts)
-    add_context_windows(vlmm, *sequences, by_label);
-  else
-    add_phone_runs(*sequences, by_label);
+  const bool runs = states == StateKind::phones || !vlmm.repeating;
+  auto sequences = std::make_shared<const std::vector<Sequence>>(pair_up(labels, audio, visual, runs));
+  auto by_label = states_of(vlmm, states);
+  add_windows(*sequences, by_label);
   auto all = std::make_shared<std::vector<State>>();
   for (auto& [label, state] : by_label) {
     if (state.windows.empty()) continue;

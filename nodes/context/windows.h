@@ -9,13 +9,19 @@
 
 namespace talkgraph {
 
-/// The training windows of each state, one item a state: every stretch of the
-/// training streams that equals the label's phones, overlaps allowed; with
-/// phones as states, the runs of the phone. States with the most frames come
-/// first. Streams are paired by key; what one of the three lacks is left out.
+/// The training windows of each state, one item a state, keyed by its label:
+/// every stretch of the training streams that equals the label's phones,
+/// overlaps allowed; with phones as states, the runs of each phone (spec §5).
+/// States with most frames come first. A state has windows of at most
+/// `max_frames` frames together, or one longer window; they are chosen evenly
+/// from all.
+///
+/// Streams are paired by key; an utterance that one of the three lacks is left
+/// out, and a state without a window gives no item. Throws std::runtime_error
+/// if no utterance is left, or lengths differ by more than two frames.
 struct ContextWindows {
   StateKind states = StateKind::contexts;
-  int max_frames = 1000;  ///< of a state; windows are thinned out evenly
+  int max_frames = 1000;
 
   Stream<StateData> operator()(const Vlmm& vlmm, const Collected<FrameLabels>& labels, const Collected<Track>& audio,
                                const Collected<Track>& visual) const;

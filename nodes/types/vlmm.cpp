@@ -4,12 +4,6 @@
 
 namespace talkgraph {
 
-bool Vlmm::trainable(const std::string& label) const {
-  const auto it = windows.find(label);
-  if (it == windows.end()) return false;
-  return it->second >= min_windows || label.find('-') == std::string::npos;
-}
-
 std::vector<std::string> label_phones(const std::string& label) {
   std::vector<std::string> phones;
   for (std::size_t at = 0; at <= label.size();) {
@@ -45,6 +39,7 @@ void fields(Archive& ar, Vlmm& v) {
     probabilities.insert(probabilities.end(), s.probability.begin(), s.probability.end());
   }
   ar("order", v.order);
+  ar("repeating", v.repeating);
   ar("alphabet", v.alphabet);
   ar("lengths", lengths);
   ar("memories", memories);
@@ -60,7 +55,6 @@ void fields(Archive& ar, Vlmm& v) {
     map->clear();
     for (std::size_t i = 0; i < labels.size(); ++i) (*map)[labels[i]] = counts.at(i);
   }
-  ar("min_windows", v.min_windows);
   if (!ar.loading()) return;
   v.states.clear();
   const auto symbols = static_cast<std::ptrdiff_t>(v.alphabet.size());

@@ -8,26 +8,27 @@
 
 namespace talkgraph {
 
-/// A variable length Markov model of phones, one symbol a video frame, as a
-/// probabilistic automaton (spec §5, thesis §5.2.1). Phones are written as
-/// indices into `alphabet`; labels as phones joined by '-', oldest first.
+/// A variable length Markov model of phones as a probabilistic automaton
+/// (spec §5, thesis §5.2.1). Its symbols are the phones of video frames, or of
+/// runs of equal frames. Phones are written as indices into `alphabet`; labels
+/// as phones joined by '-', oldest first.
 struct Vlmm {
   /// A memory w of at most `order` phones, oldest first.
   struct State {
     std::vector<std::int64_t> memory;
     std::vector<double> probability;  ///< of each next phone
-    std::vector<std::int64_t> next;   ///< state after each phone, -1 where that was never seen
+    std::vector<std::int64_t> next;   ///< state after each phone, -1 where there is no transition
   };
 
   std::int64_t order = 6;
-  std::vector<std::string> alphabet;
+  bool repeating = true;                          ///< one symbol a frame; false: one a run of equal frames
+  std::vector<std::string> alphabet;              ///< sorted
   std::vector<State> states;                      ///< the first is the empty memory
   std::map<std::string, std::int64_t> occupancy;  ///< training frames that carry each label
-  std::map<std::string, std::int64_t> windows;    ///< training windows that equal each label
-  std::int64_t min_windows = 1;                   ///< a label with fewer is not trained
+  std::map<std::string, std::int64_t> windows;    ///< trainable labels and how often each occurs in training
 
-  /// Single phones always are, so that every stream has an answer.
-  bool trainable(const std::string& label) const;
+  /// Single phones of the alphabet always are.
+  bool trainable(const std::string& label) const { return windows.contains(label); }
 };
 void fields(Archive& ar, Vlmm::State& s);
 template <>

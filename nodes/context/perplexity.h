@@ -1,0 +1,25 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/phones.h"
+#include "nodes/types/report.h"
+#include "nodes/types/vlmm.h"
+
+namespace talkgraph {
+
+/// How well a Markov model predicts other phone streams (thesis Eqns 5.25 and
+/// 5.26), as a table of one row:
+///   perplexity  2^H
+///   entropy     H = −1/N Σ log₂ max(P(σ_n | s_{n−1}), floor), bits a symbol
+///   missed      share of the symbols for which there was no transition
+///   symbols     N: frames, or runs, as the model was trained on
+///   memories, labels  of the model: kept memories, trainable labels
+/// Throws std::runtime_error if there is no symbol.
+struct ContextPerplexity {
+  double floor = 1e-4;  ///< least probability: what an unseen phone or transition counts
+
+  Table operator()(const Vlmm& vlmm, const Collected<FrameLabels>& labels) const;
+};
+void describe(Description<ContextPerplexity>& d);
+
+}  // namespace talkgraph
