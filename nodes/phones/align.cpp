@@ -39,7 +39,7 @@ void learn_missing(SphinxAligner& aligner, const Words& words) {
 }
 
 std::vector<FrameSpan> without_fillers(std::vector<FrameSpan> words) {
-  std::erase_if(words, [](const FrameSpan& w) { return w.label.starts_with('<') || w.label.starts_with('['); });
+  std::erase_if(words, is_filler);
   return words;
 }
 
@@ -56,21 +56,21 @@ struct Stretch {
   double distance = 0;
 };
 
-/// The least likely run of words that together last a second, or the whole
+/// The least likely run of words that together last three seconds, or the whole
 /// where that is shorter.
-Stretch worst_second(const std::vector<FrameSpan>& words) {
-  constexpr int kSecond = 100;
+Stretch worst_stretch(const std::vector<FrameSpan>& words) {
+  constexpr int kFrames = 300;
   Stretch worst;
   for (std::size_t first = 0; first < words.size(); ++first) {
     int frames = 0;
     double score = 0;
     std::size_t end = first;
-    for (; end < words.size() && frames < kSecond; ++end) {
+    for (; end < words.size() && frames < kFrames; ++end) {
       frames += words[end].end - words[end].start;
       score += words[end].score * (words[end].end - words[end].start);
     }
-    if (frames < kSecond && first > 0) break;
-    if (-score / frames > worst.distance || first == 0) worst = {first, end - first, -score / frames};
+    if (frames < kFrames && first > 0) break;
+    if (first == 0 || -score / frames > worst.distance) worst = {first, end - first, -score / frames};
   }
   return worst;
 }
@@ -84,7 +84,7 @@ void check_fit(const SphinxAligner::Result& result, const Words& words, double m
         "{}); check that transcript and sound belong together",
         words.size(), words[reached], reached + 1));
   }
-  const Stretch worst = worst_second(found);
+  const Stretch worst = worst_stretch(found);
   if (worst.distance <= mismatch) return;
   throw std::runtime_error(
       fmt::format("phones.align: the transcript does not match the sound: {} from {:.2f} s to {:.2f} s is unlike what "
@@ -103,6 +103,10 @@ std::optional<PhoneTrack> Align::operator()(const Audio& audio, const Transcript
   const Words words = known_words(transcript, track);
   if (words.empty() || is_blank(audio)) return all_silence(audio);
 
+  if (audio.seconds() > kLongest)
+    throw std::runtime_error(fmt::format(
+        "phones.align: the sound lasts {:.0f} s, PocketSphinx takes at most {:.0f} s at once; cut it at a pause",
+        audio.seconds(), kLongest));
   const auto aligner = decoder_pool<SphinxAligner>().take();
   learn_missing(*aligner, words);
   const auto result = aligner->align(sphinx_samples(audio), words);

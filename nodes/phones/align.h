@@ -20,10 +20,10 @@ namespace talkgraph {
 ///
 /// The result covers the whole sound without gaps. Digital silence, sound
 /// shorter than 50 ms and an empty transcript give one "sil".
-/// Errors: words that do not go with the sound, or do not fit into it, with
-/// the place.
+/// Errors: words that do not go with the sound, or do not fit into it, with the
+/// place; sound longer than 5 minutes.
 struct Align {
-  double mismatch = 60;  ///< the least likeness of any second of speech to its words, a distance per frame
+  double mismatch = 50;  ///< how unlike their sound three seconds of words may be: a distance per frame
 
   std::optional<PhoneTrack> operator()(const Audio& audio, const Transcript* transcript, const WordTrack* words,
                                        const PhoneTrack* given) const;

@@ -45,8 +45,9 @@ ps_alignment_iter_s* ps_alignment_iter_next(ps_alignment_iter_s*);
 ps_search_s* state_align_search_init(const char* name, cmd_ln_t*, acmod_s*, ps_alignment_s*);
 int32 dict_wordid(dict_s*, const char*);
 const char* dict_ciphone_str(dict_s*, int32 wid, int32 position);
-int acmod_set_grow(acmod_s*, int);
-int acmod_rewind(acmod_s*);
+int acmod_start_utt(acmod_s*);
+int acmod_process_raw(acmod_s*, const int16** sound, size_t* samples, int whole_utterance);
+int acmod_end_utt(acmod_s*);
 int acmod_advance(acmod_s*);
 void acmod_clear_active(acmod_s*);
 }
@@ -154,16 +155,51 @@ std::vector<FrameSpan> segments(ps_decoder_t* ps) {
   return found;
 }
 
+constexpr int kHop = 160;  // samples
+
+/// A part of an utterance for the state aligner, whose time and memory grow
+/// with the square of the length.
+struct Piece {
+  int start = 0;
+  int end = 0;
+  std::vector<FrameSpan> words;
+};
+
+/// Cuts in pauses once a piece has 15 s, at any word once it has 30 s.
+std::vector<Piece> pieces(const std::vector<FrameSpan>& words) {
+  constexpr int kLong = 1500, kTooLong = 3000, kPause = 20;
+  std::vector<Piece> all(1);
+  for (const auto& word : words) {
+    const int length = word.end - all.back().start;
+    if (length > kLong && is_filler(word) && word.end - word.start >= kPause) {
+      const int middle = (word.start + word.end) / 2;
+      all.back().words.push_back(word);
+      all.back().end = middle;
+      all.push_back({middle, 0, {}});
+    } else if (length > kTooLong && !all.back().words.empty()) {
+      all.back().end = word.start;
+      all.push_back({word.start, 0, {}});
+    }
+    all.back().words.push_back(word);
+  }
+  all.back().end = words.back().end;
+  return all;
+}
+
 }  // namespace
+
+bool is_filler(const FrameSpan& word) { return word.label.starts_with('<') || word.label.starts_with('['); }
 
 double sphinx_boundary(int frame) { return 0.010 * frame + 0.0078; }
 
 struct SphinxAligner::Decoder {
   DecoderPtr ps;
 
-  /// Phone times of the words by Viterbi over their states, on the features
-  /// that the word search left behind.
-  std::vector<FrameSpan> align_states(const std::vector<FrameSpan>& words) const;
+  /// Makes the features of the sound and says of how many frames.
+  int features(std::span<const std::int16_t> sound) const;
+  /// Phone times of words that are known to be in the sound, by Viterbi over their
+  /// states; empty if the words do not fit.
+  std::vector<FrameSpan> align_states(std::span<const std::int16_t> sound, std::span<const FrameSpan> words) const;
   void check_layout() const;
 };
 
@@ -189,7 +225,20 @@ void SphinxAligner::Decoder::check_layout() const {
         "Debian 12); install that, or give phone labels with the corpus");
 }
 
-std::vector<FrameSpan> SphinxAligner::Decoder::align_states(const std::vector<FrameSpan>& words) const {
+int SphinxAligner::Decoder::features(std::span<const std::int16_t> sound) const {
+  acmod_s* acmod = head(ps.get()).acmod;
+  const std::int16_t* samples = sound.data();
+  std::size_t count = sound.size();
+  if (ps_start_stream(ps.get()) < 0 || acmod_start_utt(acmod) < 0)
+    throw std::runtime_error("phones.align: PocketSphinx cannot start an utterance");
+  const int frames = acmod_process_raw(acmod, &samples, &count, TRUE);
+  if (frames < 0 || acmod_end_utt(acmod) < 0)
+    throw std::runtime_error("phones.align: PocketSphinx failed on the sound");
+  return frames;
+}
+
+std::vector<FrameSpan> SphinxAligner::Decoder::align_states(std::span<const std::int16_t> sound,
+                                                            std::span<const FrameSpan> words) const {
   const DecoderHead& d = head(ps.get());
   const std::unique_ptr<ps_alignment_s, FreeAlignment> alignment(ps_alignment_init(d.d2p));
   std::vector<int32> ids;
@@ -200,10 +249,11 @@ std::vector<FrameSpan> SphinxAligner::Decoder::align_states(const std::vector<Fr
   if (ps_alignment_populate(alignment.get()) < 0) throw std::runtime_error("phones.align: too many words at once");
   const SearchPtr search(state_align_search_init("phones", d.config, d.acmod, alignment.get()));
   const SearchFunctions& f = *head(search.get()).functions;
-  if (acmod_rewind(d.acmod) < 0) throw std::runtime_error("phones.align: PocketSphinx lost its features");
+
+  const int frames = features(sound);
   acmod_clear_active(d.acmod);
   f.start(search.get());
-  for (int frame = 0; frame < words.back().end; ++frame) {
+  for (int frame = 0; frame < frames; ++frame) {
     if (f.step(search.get(), frame) < 0) throw std::runtime_error("phones.align: PocketSphinx failed on the sound");
     acmod_advance(d.acmod);
   }
@@ -253,13 +303,19 @@ SphinxAligner::Result SphinxAligner::align(std::span<const std::int16_t> sound, 
   if (ps_set_fsg(ps, "words", grammar.get()) < 0 || ps_set_search(ps, "words") < 0)
     throw std::runtime_error("phones.align: PocketSphinx does not take the words");
 
-  acmod_set_grow(head(ps).acmod, TRUE);
   process(ps, sound);
   Result result{segments(ps), {}};
-  const auto spoken = std::count_if(result.words.begin(), result.words.end(), [&](const FrameSpan& w) {
-    return !w.label.starts_with('<') && !w.label.starts_with('[');
-  });
-  if (static_cast<std::size_t>(spoken) == words.size()) result.phones = decoder_->align_states(result.words);
+  const auto spoken =
+      std::count_if(result.words.begin(), result.words.end(), [](const auto& w) { return !is_filler(w); });
+  if (static_cast<std::size_t>(spoken) != words.size()) return result;
+  for (const Piece& piece : pieces(result.words)) {
+    const std::size_t first = static_cast<std::size_t>(piece.start) * kHop;
+    const std::size_t last = piece.end == result.words.back().end ? sound.size() : std::size_t(piece.end) * kHop;
+    const auto phones = decoder_->align_states(sound.subspan(first, last - first), piece.words);
+    if (phones.empty()) return {std::move(result.words), {}};
+    for (const auto& phone : phones)
+      result.phones.push_back({phone.label, phone.start + piece.start, phone.end + piece.start, 0});
+  }
   return result;
 }
 

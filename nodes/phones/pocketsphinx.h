@@ -19,6 +19,9 @@ struct FrameSpan {
 /// Samples are taken at this rate, 16 bits.
 inline constexpr double kSphinxRate = 16000;
 
+/// Whether a word is a pause or a noise.
+bool is_filler(const FrameSpan& word);
+
 /// Time of the boundary before a frame: half a window less half a hop after the frame's first sample.
 double sphinx_boundary(int frame);
 

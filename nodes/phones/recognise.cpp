@@ -1,5 +1,9 @@
 #include "nodes/phones/recognise.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 #include "nodes/phones/decoder_pool.h"
 #include "nodes/phones/pocketsphinx.h"
 #include "nodes/phones/sound.h"
@@ -9,7 +13,11 @@ namespace talkgraph {
 PhoneTrack Recognise::operator()(const Audio& audio, const PhoneTrack* known, Context& context) const {
   if (known) return *known;
   if (is_blank(audio)) return all_silence(audio);
-  context.log("no transcript: phones are recognised, about 40 % of them will be wrong; give a transcript if you can");
+  if (audio.seconds() > kLongest)
+    throw std::runtime_error(fmt::format(
+        "phones.recognise: the sound lasts {:.0f} s, PocketSphinx takes at most {:.0f} s at once; cut it at a pause",
+        audio.seconds(), kLongest));
+  context.log("no transcript: phones are recognised and most of them will be wrong; give a transcript if you can");
   const auto phones = decoder_pool<SphinxPhoneLoop>().take()->decode(sphinx_samples(audio));
   return phones.empty() ? all_silence(audio) : phone_track(phones, audio.seconds());
 }

@@ -17,7 +17,11 @@ std::vector<std::int16_t> sphinx_samples(const Audio& audio);
 /// never beyond 3 steps of a 16-bit recording.
 bool is_blank(const Audio& audio);
 
-/// One "sil" of the length of the sound.
+/// PocketSphinx counts the frames of an utterance in 16 bits and ends the
+/// process beyond that; seconds.
+inline constexpr double kLongest = 300;
+
+/// One "sil" of the length of the sound; nothing for no sound.
 PhoneTrack all_silence(const Audio& audio);
 
 /// Phones with times, from the model's labels: fillers become "sil" and

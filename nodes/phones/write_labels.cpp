@@ -6,9 +6,8 @@
 namespace talkgraph {
 
 Artifact WriteLabels::operator()(const PhoneTrack& phones, const WordTrack* words, Context& context) const {
-  const std::string name = context.item.empty() ? "phones" : context.item;
-  const auto write = [&](const char* extension, const std::string& text) {
-    return write_text(context.folder, folder + "/" + name + extension, text, "phones of " + name);
+  const auto write = [&](const char* ending, const std::string& text) {
+    return write_text(context, folder, ending, "phones", text);
   };
   if (format == LabelFormat::htk) return write(".lab", htk_labels(phones.phones));
   if (format == LabelFormat::csv) return write(".csv", csv_labels(phones.phones));

@@ -37,9 +37,8 @@ std::string viseme_text(const PhoneTrack& phones, VisemeFormat format, const std
 }
 
 Artifact WriteVisemes::operator()(const PhoneTrack& phones, Context& context) const {
-  const std::string name = context.item.empty() ? "visemes" : context.item;
-  return write_text(context.folder, folder + "/" + name + (format == VisemeFormat::tsv ? ".tsv" : ".json"),
-                    viseme_text(phones, format, name), "mouth shapes of " + name);
+  return write_text(context, folder, format == VisemeFormat::tsv ? ".tsv" : ".json", "visemes",
+                    viseme_text(phones, format, context.item));
 }
 
 void describe(Description<WriteVisemes>& d) {
