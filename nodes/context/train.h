@@ -16,13 +16,20 @@ namespace talkgraph {
 ///   ΔH(σw, w) = p(σw) Σ_σ' p(σ'|σw) ln(p(σ'|σw) / p(σ'|w)) ≥ keep,
 /// and on a phone σ it leads to the longest kept suffix of wσ.
 ///
+/// The defaults have the least perplexity on held-out recordings: GRID speaker
+/// s1, forced alignment, 198 clips to train on and 30 validation clips. There
+/// it falls with the order (2.23, 2.01, 1.89, 1.86 for 1 to 4) and no further
+/// beyond 5; 1.86 at keep = 4e-4, 1.97 at 1e-4, 2.15 at 1e-5, 1.93 at 1e-3;
+/// pruning what was seen once costs 0.14. At keep = 1e-4 segments are about
+/// twice as long.
+///
 /// Trainable are the longest suffix with at least `min_windows` windows of each
 /// label met in training, and every phone. Throws std::runtime_error if there
 /// is no frame, or a label holds '-'.
 struct ContextTrain {
   int order = 6;          ///< N, longest memory, symbols
-  double prune = 1e-4;    ///< ε_p
-  double keep = 1e-5;     ///< ε_s, nats
+  double prune = 0;       ///< ε_p
+  double keep = 4e-4;     ///< ε_s, nats
   int min_windows = 5;    ///< rarer labels are mapped to a suffix
   bool repeating = true;  ///< a symbol a frame; false: a symbol a run of equal frames
 
