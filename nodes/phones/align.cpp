@@ -80,9 +80,9 @@ void check_fit(const SphinxAligner::Result& result, const Words& words, double m
   if (result.phones.empty()) {
     const std::size_t reached = std::min(found.size(), words.size() - 1);
     throw std::runtime_error(fmt::format(
-        "phones.align: the {} words of the transcript do not fit into the sound: it ends at or before \"{}\" (word "
-        "{}); check that transcript and sound belong together",
-        words.size(), words[reached], reached + 1));
+        "phones.align: the {} words of the transcript do not fit into the sound: it ends in word {}, {}; check "
+        "that transcript and sound belong together",
+        words.size(), reached + 1, quote(std::span(words).subspan(reached, 1))));
   }
   const Stretch worst = worst_stretch(found);
   if (worst.distance <= mismatch) return;

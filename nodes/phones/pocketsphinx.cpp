@@ -132,14 +132,6 @@ DecoderPtr make_decoder(std::vector<std::string> options) {
   return ps;
 }
 
-void process(ps_decoder_t* ps, std::span<const std::int16_t> sound) {
-  // Forgets the noise level of earlier sound.
-  if (ps_start_stream(ps) < 0 || ps_start_utt(ps) < 0)
-    throw std::runtime_error("phones: PocketSphinx cannot start an utterance");
-  const int searched = ps_process_raw(ps, sound.data(), sound.size(), FALSE, TRUE);
-  if (ps_end_utt(ps) < 0 || searched < 0) throw std::runtime_error("phones: PocketSphinx failed on the sound");
-}
-
 std::vector<FrameSpan> segments(ps_decoder_t* ps) {
   std::vector<FrameSpan> found;
   for (ps_seg_t* segment = ps_seg_iter(ps); segment; segment = ps_seg_next(segment)) {
@@ -153,6 +145,19 @@ std::vector<FrameSpan> segments(ps_decoder_t* ps) {
     found.push_back(std::move(span));
   }
   return found;
+}
+
+/// Searches the sound: the spans of the best complete path, and if there is none
+/// those of the best one so far.
+std::vector<FrameSpan> search(ps_decoder_t* ps, std::span<const std::int16_t> sound) {
+  // A new stream forgets the noise level of earlier sound.
+  if (ps_start_stream(ps) < 0 || ps_start_utt(ps) < 0)
+    throw std::runtime_error("phones: PocketSphinx cannot start an utterance");
+  const int searched = ps_process_raw(ps, sound.data(), sound.size(), FALSE, TRUE);
+  std::vector<FrameSpan> so_far = segments(ps);
+  if (ps_end_utt(ps) < 0 || searched < 0) throw std::runtime_error("phones: PocketSphinx failed on the sound");
+  std::vector<FrameSpan> complete = segments(ps);
+  return complete.empty() ? so_far : complete;
 }
 
 constexpr int kHop = 160;  // samples
@@ -303,8 +308,7 @@ SphinxAligner::Result SphinxAligner::align(std::span<const std::int16_t> sound, 
   if (ps_set_fsg(ps, "words", grammar.get()) < 0 || ps_set_search(ps, "words") < 0)
     throw std::runtime_error("phones.align: PocketSphinx does not take the words");
 
-  process(ps, sound);
-  Result result{segments(ps), {}};
+  Result result{search(ps, sound), {}};
   const auto spoken =
       std::count_if(result.words.begin(), result.words.end(), [](const auto& w) { return !is_filler(w); });
   if (static_cast<std::size_t>(spoken) != words.size()) return result;
@@ -330,8 +334,7 @@ SphinxPhoneLoop::SphinxPhoneLoop() : decoder_(std::make_unique<Decoder>()) {
 SphinxPhoneLoop::~SphinxPhoneLoop() = default;
 
 std::vector<FrameSpan> SphinxPhoneLoop::decode(std::span<const std::int16_t> sound) {
-  process(decoder_->ps.get(), sound);
-  return segments(decoder_->ps.get());
+  return search(decoder_->ps.get(), sound);
 }
 
 }  // namespace talkgraph
