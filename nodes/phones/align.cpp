@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <span>
 #include <stdexcept>
 
 #include "nodes/phones/decoder_pool.h"

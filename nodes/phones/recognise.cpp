@@ -23,7 +23,7 @@ PhoneTrack Recognise::operator()(const Audio& audio, const PhoneTrack* known, Co
 }
 
 void describe(Description<Recognise>& d) {
-  d.type("phones.recognise").summary("phones of speech whose words are not known; about 40 % are wrong").stored();
+  d.type("phones.recognise").summary("phones of speech whose words are not known; most of them are wrong").stored();
   d.source("PocketSphinx 0.8+5prealpha with its en-us model");
   d.input("audio").input("known", "phones that are known already, passed on");
   d.output("phones");

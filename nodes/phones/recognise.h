@@ -6,12 +6,13 @@
 
 namespace talkgraph {
 
-/// Phones of speech whose words are not known, by PocketSphinx's phone loop
-/// with its phone bigram. About 40 % of the phones are wrong: it is a stopgap,
-/// and says so in the log. Known phones (from phones.align) are passed on.
+/// Phones of speech whose words are not known, by PocketSphinx's loop of
+/// context-independent phones with its phone bigram. Most phones are wrong (60 to 70 %,
+/// measured against known phones): it is a stopgap, and says so in the log. Known phones (from
+/// phones.align) are passed on.
 ///
 /// The result covers the whole sound without gaps; digital silence and sound
-/// shorter than 50 ms give one "sil".
+/// shorter than 50 ms give one "sil". Errors: sound longer than 5 minutes.
 struct Recognise {
   PhoneTrack operator()(const Audio& audio, const PhoneTrack* known, Context& context) const;
 };
