@@ -1,10 +1,15 @@
 #include "nodes/normalise/mean_center.h"
 
+#include <cmath>
 #include <stdexcept>
 
 namespace talkgraph {
 
 MeanCenter::Out MeanCenter::operator()(const Track& track, const Mask* usable) const {
+  if (!track.values.allFinite()) throw std::runtime_error("a track with NaN or infinite values has no mean");
+  if (usable && std::abs(track.frames() - static_cast<Eigen::Index>(usable->frames.size())) > 2)
+    throw std::runtime_error("a mask of " + std::to_string(usable->frames.size()) + " frames does not fit a track of " +
+                             std::to_string(track.frames()));
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(track.dimension());
   Eigen::Index count = 0;
   for (Eigen::Index t = 0; t < track.frames(); ++t) {

@@ -6,7 +6,9 @@
 namespace talkgraph {
 
 /// Takes each sequence's mean off, per dimension (Eqn 3.36): over all its
-/// frames, pauses included, or over those that `usable` marks.
+/// frames, pauses included, or over those that `usable` marks. Throws
+/// std::runtime_error on NaN, without a usable frame, and where mask and track
+/// differ by more than two frames.
 struct MeanCenter {
   struct Out {
     Track centred;  ///< T × D

@@ -3,6 +3,7 @@
 #include "nodes/normalise/mean_center.h"
 #include "nodes/normalise/mean_of.h"
 #include "nodes/normalise/restore.h"
+#include "nodes/normalise/zscore.h"
 
 namespace talkgraph {
 
@@ -10,6 +11,8 @@ void register_normalise(Registry& registry) {
   registry.add<MeanCenter>();
   registry.add<MeanOf>();
   registry.add<Restore>();
+  registry.add<ZscoreLearn>();
+  registry.add<ZscoreApply>();
 }
 
 }  // namespace talkgraph

@@ -7,36 +7,45 @@
 namespace talkgraph {
 
 Frames Frame::operator()(const Audio& audio) const {
-  if (audio.rate <= 0) throw std::runtime_error("sound with a sample rate that is not positive");
+  if (!(audio.rate > 0)) throw std::runtime_error("sound with a sample rate that is not positive");
+  if (!audio.samples.allFinite())
+    throw std::runtime_error("sound with NaN or infinite samples: look at the file that it was read from");
+  const auto samples = audio.samples.size();
   const auto length = static_cast<Eigen::Index>(std::lround(window * audio.rate));
   const double hop = audio.rate / rate.value();  // samples, not whole in general
   if (length < 1 || hop < 1)
-    throw std::invalid_argument("window and hop must hold at least one sample at this sample rate");
+    throw std::invalid_argument("window and hop must hold at least one sample at " + std::to_string(audio.rate) +
+                                " samples per second");
+
+  // In units of 1 / num samples everything is whole, so only the quotient is rounded.
+  const auto num = static_cast<double>(rate.num()), step = audio.rate * static_cast<double>(rate.den());
+  const double lead = centred ? (static_cast<double>(length) * num - step) / 2 : 0;
   const auto begin = [&](Eigen::Index t) {
-    return static_cast<Eigen::Index>(std::llround(static_cast<double>(t) * hop));
+    return static_cast<Eigen::Index>(std::floor((static_cast<double>(t) * step - lead) / num + 0.5));
   };
-  const auto samples = audio.samples.size();
-  Eigen::Index count = 1;
-  if (samples > length) count = static_cast<Eigen::Index>(static_cast<double>(samples - length) / hop) + 2;
-  while (count > 1 && begin(count - 1) + length > samples) --count;
+  Eigen::Index count = std::max<Eigen::Index>(1, std::lround(audio.seconds() * rate.value()));
+  if (!centred) count += 1;
+  while (!centred && count > 1 && begin(count - 1) + length > samples) --count;
 
   Frames out;
   out.rate = rate;
-  out.start = window / 2;
+  out.start = centred ? 0.5 / rate.value() : window / 2;
   out.sample_rate = audio.rate;
   out.values.setZero(count, length);
   for (Eigen::Index t = 0; t < count; ++t) {
-    const auto n = std::min(length, samples - begin(t));
-    out.values.row(t).head(n) = audio.samples.segment(begin(t), n).transpose();
+    const auto from = std::max<Eigen::Index>(0, begin(t)), to = std::min(samples, begin(t) + length);
+    if (from < to) out.values.row(t).segment(from - begin(t), to - from) = audio.samples.segment(from, to - from);
   }
   return out;
 }
 
 void describe(Description<Frame>& d) {
-  d.type("speech.frame").summary("cuts sound into overlapping frames").source("Thesis §3.2");
+  d.type("speech.frame").version(2).summary("cuts sound into overlapping frames").source("Thesis §3.2, §3.5.1");
   d.input("audio").output("frames");
   d.param("window", &Frame::window).positive().unit("s").doc("length of a frame");
   d.param("rate", &Frame::rate).positive().unit("1/s").doc("frames per second");
+  d.param("centred", &Frame::centred)
+      .doc("frame t lies around (t + ½) / rate, as video frames do: features straight at the video rate");
 }
 
 }  // namespace talkgraph

@@ -1,10 +1,12 @@
 #include "nodes/speech/register.h"
 
 #include "nodes/speech/cepstrum.h"
+#include "nodes/speech/deltas.h"
 #include "nodes/speech/energy.h"
 #include "nodes/speech/frame.h"
 #include "nodes/speech/join.h"
 #include "nodes/speech/mel.h"
+#include "nodes/speech/one_hot.h"
 #include "nodes/speech/preemphasis.h"
 #include "nodes/speech/spectrum.h"
 #include "nodes/speech/stack.h"
@@ -22,6 +24,8 @@ void register_speech(Registry& registry) {
   registry.add<Energy>();
   registry.add<Join>();
   registry.add<Stack>();
+  registry.add<Deltas>();
+  registry.add<OneHot>();
 }
 
 }  // namespace talkgraph

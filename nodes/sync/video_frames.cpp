@@ -7,8 +7,12 @@
 namespace talkgraph {
 
 Eigen::Index video_frames(const Track& track, const Audio* audio, const Rational& fps) {
-  const double seconds =
-      audio ? audio->seconds() : 2 * track.start + static_cast<double>(track.frames() - 1) / track.rate.value();
+  const double reach = 2 * track.start + static_cast<double>(track.frames() - 1) / track.rate.value();
+  const double seconds = audio ? audio->seconds() : reach;
+  const double tolerance = 2 / fps.value() + 2 / track.rate.value() + 2 * std::abs(track.start);
+  if (std::abs(seconds - reach) > tolerance)
+    throw std::runtime_error("sound of " + std::to_string(seconds) + " s beside a track of " + std::to_string(reach) +
+                             " s: both must be of one utterance");
   return std::max<Eigen::Index>(1, std::lround(seconds * fps.value()));
 }
 

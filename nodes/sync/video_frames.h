@@ -6,7 +6,9 @@
 namespace talkgraph {
 
 /// Video frames in sound of this length: round(seconds × fps), at least 1. The
-/// length is that of `audio`, or as far as `track` reaches where there is none.
+/// length is that of `audio`, or as far as `track` reaches where there is none,
+/// the last centre lying as far from the end as the first from the beginning.
+/// Throws std::runtime_error if sound and track are clearly not of one utterance.
 Eigen::Index video_frames(const Track& track, const Audio* audio, const Rational& fps);
 
 /// Centre of video frame n, seconds: (n + ½) / fps.

@@ -6,9 +6,12 @@
 
 namespace talkgraph {
 
+/// One row a frame, each row in one piece of memory.
+using FrameMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Sound cut into overlapping frames: one row a frame (T × N samples).
 struct Frames {
-  Eigen::MatrixXd values;
+  FrameMatrix values;
   Rational rate{100};  ///< frames per second
   double start = 0;    ///< centre of the first frame, seconds
   double sample_rate = 16000;
@@ -19,7 +22,7 @@ void fields(Archive& ar, Frames& f);
 
 /// Spectra of frames: one row a frame, bins from 0 to the Nyquist frequency.
 struct Spectrum {
-  Eigen::MatrixXd values;
+  FrameMatrix values;
   Rational rate{100};
   double start = 0;
   double sample_rate = 16000;

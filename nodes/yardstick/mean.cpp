@@ -9,6 +9,10 @@ MeanModel MeanTrain::operator()(const Collected<Track>& visual) const {
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(visual[0].dimension());
   Eigen::Index frames = 0;
   for (std::size_t i = 0; i < visual.size(); ++i) {
+    if (visual[i].dimension() != sum.size())
+      throw std::runtime_error(visual.key(i) + ": " + std::to_string(visual[i].dimension()) +
+                               " dimensions, others have " + std::to_string(sum.size()));
+    if (!visual[i].values.allFinite()) throw std::runtime_error(visual.key(i) + ": NaN or infinite values");
     sum += visual[i].values.colwise().sum();
     frames += visual[i].frames();
   }

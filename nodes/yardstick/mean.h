@@ -6,7 +6,8 @@
 
 namespace talkgraph {
 
-/// The mean of all training frames.
+/// The mean of all training frames. Throws std::runtime_error on none, on NaN,
+/// and where dimensions differ.
 struct MeanTrain {
   MeanModel operator()(const Collected<Track>& visual) const;
 };

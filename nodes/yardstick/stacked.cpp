@@ -6,12 +6,43 @@
 #include <vector>
 
 namespace talkgraph {
+namespace {
+
+/// The tracks of one utterance and how many frames they have in common.
+struct Pair {
+  const Track* audio;
+  const Track* visual;
+  Eigen::Index frames;
+
+  auto audio_values() const { return audio->values.topRows(frames); }
+};
+
+std::vector<Pair> pair_up(const Collected<Track>& audio, const Collected<Track>& visual) {
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < audio.size(); ++i) {
+    const Track *a = &audio[i], *v = visual.find(audio.key(i));
+    if (!v) continue;
+    if (std::abs(a->frames() - v->frames()) > 2)
+      throw std::runtime_error(audio.key(i) + ": " + std::to_string(a->frames()) + " audio frames, " +
+                               std::to_string(v->frames()) + " visual frames");
+    if (!a->values.allFinite() || !v->values.allFinite())
+      throw std::runtime_error(audio.key(i) + ": NaN or infinite values");
+    pairs.push_back({a, v, std::min(a->frames(), v->frames())});
+    if (a->dimension() != pairs[0].audio->dimension() || v->dimension() != pairs[0].visual->dimension())
+      throw std::runtime_error(audio.key(i) + ": other dimensions than the tracks before");
+  }
+  return pairs;
+}
+
+}  // namespace
 
 Eigen::MatrixXd stacked(const StackedInputs& inputs, const Track& audio) {
   const auto frames = audio.frames(), dimension = audio.dimension();
   if (dimension != inputs.mean.size())
     throw std::runtime_error("audio features of " + std::to_string(dimension) +
                              " dimensions, the model was trained on " + std::to_string(inputs.mean.size()));
+  if (!audio.values.allFinite())
+    throw std::runtime_error("audio features with NaN or infinite values: look at the stage before");
   const Eigen::MatrixXd z = (audio.values.rowwise() - inputs.mean).array().rowwise() * inputs.scale.array();
   const int n = inputs.context;
   Eigen::MatrixXd out(frames, dimension * (2 * n + 1));
@@ -22,39 +53,31 @@ Eigen::MatrixXd stacked(const StackedInputs& inputs, const Track& audio) {
 }
 
 StackedTraining stack_training(const Collected<Track>& audio, const Collected<Track>& visual, int context) {
-  std::vector<std::pair<Track, Track>> pairs;
+  const auto pairs = pair_up(audio, visual);
   Eigen::Index total = 0;
-  for (std::size_t i = 0; i < audio.size(); ++i) {
-    const Track* other = visual.find(audio.key(i));
-    if (!other) continue;
-    if (std::abs(audio[i].frames() - other->frames()) > 2)
-      throw std::runtime_error(audio.key(i) + ": " + std::to_string(audio[i].frames()) + " audio frames, " +
-                               std::to_string(other->frames()) + " visual frames");
-    const auto frames = std::min(audio[i].frames(), other->frames());
-    pairs.emplace_back(audio[i], *other);
-    pairs.back().first.values.conservativeResize(frames, Eigen::NoChange);
-    pairs.back().second.values.conservativeResize(frames, Eigen::NoChange);
-    total += frames;
-  }
+  for (const auto& p : pairs) total += p.frames;
   if (total == 0) throw std::runtime_error("no training frame: is the training selection empty?");
 
   StackedTraining out;
   out.inputs.context = context;
-  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(pairs[0].first.dimension());
-  for (const auto& [a, v] : pairs) sum += a.values.colwise().sum();
-  out.inputs.mean = sum / static_cast<double>(total);
-  Eigen::RowVectorXd square = Eigen::RowVectorXd::Zero(sum.size());
-  for (const auto& [a, v] : pairs) square += (a.values.rowwise() - out.inputs.mean).colwise().squaredNorm();
-  const Eigen::ArrayXd deviation = (square.transpose().array() / static_cast<double>(total)).sqrt();
-  out.inputs.scale = (deviation > 1e-12).select(1 / deviation.max(1e-300), 0.0).matrix().transpose();
+  const auto dimension = pairs[0].audio->dimension();
+  const auto n = static_cast<double>(total);
+  out.inputs.mean = Eigen::RowVectorXd::Zero(dimension);
+  for (const auto& p : pairs) out.inputs.mean += p.audio_values().colwise().sum() / n;
+  Eigen::RowVectorXd variance = Eigen::RowVectorXd::Zero(dimension);
+  for (const auto& p : pairs) variance += (p.audio_values().rowwise() - out.inputs.mean).colwise().squaredNorm() / n;
+  const Eigen::RowVectorXd deviation = variance.cwiseSqrt();
+  // Below this only rounding varies.
+  const Eigen::RowVectorXd least = 1e-10 * out.inputs.mean.cwiseAbs();
+  out.inputs.scale = (deviation.array() > least.array()).select(deviation.cwiseInverse(), 0.0);
 
-  out.audio.resize(total, sum.size() * (2 * context + 1));
-  out.visual.resize(total, pairs[0].second.dimension());
+  out.audio.resize(total, dimension * (2 * context + 1));
+  out.visual.resize(total, pairs[0].visual->dimension());
   Eigen::Index at = 0;
-  for (const auto& [a, v] : pairs) {
-    out.audio.middleRows(at, a.frames()) = stacked(out.inputs, a);
-    out.visual.middleRows(at, a.frames()) = v.values;
-    at += a.frames();
+  for (const auto& p : pairs) {
+    out.audio.middleRows(at, p.frames) = stacked(out.inputs, *p.audio).topRows(p.frames);
+    out.visual.middleRows(at, p.frames) = p.visual->values.topRows(p.frames);
+    at += p.frames;
   }
   return out;
 }

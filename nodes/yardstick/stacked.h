@@ -6,7 +6,7 @@
 namespace talkgraph {
 
 /// z-scored audio, each frame with its neighbours (T × D (2 context + 1)).
-/// Throws std::runtime_error if the dimension is not the trained one.
+/// Throws std::runtime_error on NaN and if the dimension is not the trained one.
 Eigen::MatrixXd stacked(const StackedInputs& inputs, const Track& audio);
 
 /// What plain regression trains on.
@@ -16,8 +16,8 @@ struct StackedTraining {
   Eigen::MatrixXd visual;  ///< N × D
 };
 
-/// Pairs audio and visual tracks by key. Throws std::runtime_error if none pair
-/// or lengths differ by more than two frames.
+/// Pairs audio and visual tracks by key. Throws std::runtime_error if none pair,
+/// on NaN, and where dimensions differ or lengths do by more than two frames.
 StackedTraining stack_training(const Collected<Track>& audio, const Collected<Track>& visual, int context);
 
 }  // namespace talkgraph
