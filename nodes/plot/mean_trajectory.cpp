@@ -41,6 +41,12 @@ Plot MeanTrajectory::operator()(const Collected<Track>& truth, const Collected<T
     if (!p || !l || truth[i].frames() == 0 || p->frames() == 0) continue;
     if (dimension >= truth[i].dimension() || dimension >= p->dimension())
       throw std::runtime_error("there is no dimension " + std::to_string(dimension) + " in " + truth.key(i));
+    const auto labelled = static_cast<Eigen::Index>(l->labels.size());
+    const auto [shortest, longest] = std::minmax({labelled, truth[i].frames(), p->frames()});
+    if (longest - shortest > 2)
+      throw std::runtime_error(truth.key(i) + ": " + std::to_string(truth[i].frames()) + " frames of truth, " +
+                               std::to_string(p->frames()) + " of prediction and " + std::to_string(labelled) +
+                               " labels");
     const Eigen::VectorXd z = truth[i].values.col(dimension), q = p->values.col(dimension);
     for (std::size_t start = 0, end = 0; start < l->labels.size(); start = end) {
       while (end < l->labels.size() && l->labels[end] == l->labels[start]) ++end;
@@ -71,12 +77,11 @@ Plot MeanTrajectory::operator()(const Collected<Track>& truth, const Collected<T
                       "parameter " + std::to_string(dimension + 1),
                       {{"truth", x, line(average.truth)}, {"prediction", x, line(average.predicted)}}});
   }
-  return {title, draw_panels(panels, 3)};
+  return {title, draw_panels(title, panels)};
 }
 
 void describe(Description<MeanTrajectory>& d) {
   d.type("plot.mean_trajectory").summary("mean trajectories through phones, truth against prediction");
-  d.source("Thesis §6.2, Figures 6.1 to 6.4");
   d.input("truth").input("predicted").input("labels", "phones at the video rate").output("plot");
   d.param("dimension", &MeanTrajectory::dimension).at_least(0).doc("of the tracks, from 0");
   d.param("phones", &MeanTrajectory::phones).within(1, 60).doc("most frequent phones shown");

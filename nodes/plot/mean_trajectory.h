@@ -8,9 +8,9 @@
 namespace talkgraph {
 
 /// Mean trajectories through the most frequent phones, truth against
-/// prediction: each occurrence of a phone, stretched to unit length with a
-/// margin of `margin` frames on both sides, averaged over all sequences
-/// (thesis Figures 3.9 to 3.16, 6.1 to 6.4).
+/// prediction: each occurrence of a phone, with `margin` frames on both sides,
+/// stretched to unit length and averaged over all sequences. Sequences that
+/// one input lacks are left out; lengths may differ by two frames.
 struct MeanTrajectory {
   int dimension = 0;  ///< of the tracks, from 0
   int phones = 9;     ///< most frequent ones, silence left out

@@ -1,13 +1,17 @@
 #include "nodes/plot/register.h"
 
+#include "nodes/plot/bars.h"
 #include "nodes/plot/mean_trajectory.h"
 #include "nodes/plot/tracks.h"
+#include "nodes/plot/trajectories.h"
 
 namespace talkgraph {
 
 void register_plot(Registry& registry) {
   registry.add<MeanTrajectory>();
+  registry.add<PlotBars>();
   registry.add<PlotTracks>();
+  registry.add<PlotTrajectories>();
 }
 
 }  // namespace talkgraph

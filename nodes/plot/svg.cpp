@@ -6,93 +6,145 @@
 #include <array>
 #include <cmath>
 
+#include "nodes/plot/axis.h"
+
 namespace talkgraph {
 namespace {
 
-constexpr double panel_width = 320, panel_height = 220;
-constexpr double left = 52, right = 12, top = 28, bottom = 40, legend = 26;
+constexpr double kLeft = 54, kRight = 14, kTop = 28, kBottom = 42, kLegend = 28;
+constexpr double kBarHeight = 24, kCharacter = 6.3, kValue = 56;
 // Okabe and Ito: told apart by people with any colour vision.
-constexpr std::array<const char*, 7> colours = {"#222222", "#d55e00", "#0072b2", "#009e73",
-                                                "#cc79a7", "#e69f00", "#56b4e9"};
+constexpr std::array<const char*, 7> kColours = {"#222222", "#d55e00", "#0072b2", "#009e73",
+                                                 "#cc79a7", "#e69f00", "#56b4e9"};
 
-struct Axis {
-  double low = 0, high = 1, step = 1;
-
-  double share(double v) const { return (v - low) / (high - low); }
-};
-
-/// Round limits and ticks around the values.
-Axis axis_of(double low, double high, int ticks) {
-  if (!(low <= high)) low = 0, high = 1;
-  if (high - low < 1e-12) low -= 0.5, high += 0.5;
-  const double raw = (high - low) / ticks, power = std::pow(10, std::floor(std::log10(raw)));
-  const double step = power * (raw / power < 1.5 ? 1 : raw / power < 3.5 ? 2 : raw / power < 7.5 ? 5 : 10);
-  return {std::floor(low / step) * step, std::ceil(high / step) * step, step};
+std::string open_svg(const std::string& title, double width, double height) {
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"11\" fill=\"#222\" role=\"img\">\n<title>{2}</title>\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+      width, height, escape_markup(title));
 }
 
-template <class Values>
-Axis axis_over(const Panel& panel, Values values, int ticks) {
+std::string text_at(double x, double y, const char* anchor, const std::string& text, const char* more = "") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
+                     escape_markup(text));
+}
+
+std::string line(const std::string& path, const char* colour, double width = 1) {
+  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n", path, colour, width);
+}
+
+/// A reference to the x or the y of a series.
+using Values = std::vector<double> Series::*;
+
+Axis axis_of(const Panel& panel, Values values, int ticks) {
   double low = INFINITY, high = -INFINITY;
   for (const auto& s : panel.series)
-    for (const double v : values(s))
+    for (const double v : s.*values)
       if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
-  return axis_of(low, high, ticks);
+  return axis_over(low, high, ticks);
 }
 
 std::string path_of(const Series& s, const Axis& x, const Axis& y, double w, double h) {
   std::string path;
   bool drawing = false;
   for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i) {
-    if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) {
-      drawing = false;
-      continue;
-    }
-    path += fmt::format("{}{:.1f} {:.1f}", drawing ? "L" : "M", x.share(s.x[i]) * w, h - y.share(s.y[i]) * h);
-    drawing = true;
+    const bool there = std::isfinite(s.x[i]) && std::isfinite(s.y[i]);
+    if (there)
+      path += fmt::format("{}{:.1f} {:.1f}", drawing ? "L" : "M", x.share(s.x[i]) * w, h - y.share(s.y[i]) * h);
+    drawing = there;
   }
   return path;
 }
 
-std::string draw_panel(const Panel& panel, double at_x, double at_y) {
-  const double w = panel_width - left - right, h = panel_height - top - bottom;
-  const Axis x = axis_over(
-      panel, [](const Series& s) -> const auto& { return s.x; }, 5);
-  const Axis y = axis_over(
-      panel, [](const Series& s) -> const auto& { return s.y; }, 4);
-  std::string out = fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n", at_x + left, at_y + top);
-  out += fmt::format("<text x=\"{:.1f}\" y=\"-10\" text-anchor=\"middle\" font-weight=\"bold\">{}</text>\n", w / 2,
-                     escape_markup(panel.title));
-  for (double v = x.low; v <= x.high + x.step / 2; v += x.step)
-    out += fmt::format(
-        "<text x=\"{0:.1f}\" y=\"{1:.1f}\" text-anchor=\"middle\">{2:.4g}</text><path d=\"M{0:.1f} {3:.1f}v4\" "
-        "stroke=\"#888\"/>\n",
-        x.share(v) * w, h + 16, std::abs(v) < x.step / 1e6 ? 0 : v, h);
-  for (double v = y.low; v <= y.high + y.step / 2; v += y.step)
-    out += fmt::format(
-        "<text x=\"-7\" y=\"{:.1f}\" text-anchor=\"end\">{:.4g}</text><path d=\"M0 {:.1f}h{:.1f}\" "
-        "stroke=\"#e4e4e4\"/>\n",
-        h - y.share(v) * h + 4, std::abs(v) < y.step / 1e6 ? 0 : v, h - y.share(v) * h, w);
-  out += fmt::format("<path d=\"M0 0V{0:.1f}H{1:.1f}\" fill=\"none\" stroke=\"#888\"/>\n", h, w);
-  out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", w / 2, h + 32,
-                     escape_markup(panel.x_label));
-  out += fmt::format("<text transform=\"translate(-40 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n", h / 2,
-                     escape_markup(panel.y_label));
+std::string draw_axes(const Panel& panel, const Axis& x, const Axis& y, double w, double h) {
+  std::string out = text_at(w / 2, -10, "middle", panel.title, " font-weight=\"bold\"");
+  for (const double v : y.ticks()) {
+    const double at = h - y.share(v) * h;
+    out += line(fmt::format("M0 {:.1f}h{:.1f}", at, w), tick_text(y, v) == "0" ? "#bbb" : "#e4e4e4");
+    out += text_at(-7, at + 4, "end", tick_text(y, v));
+  }
+  for (const double v : x.ticks()) {
+    out += line(fmt::format("M{:.1f} {:.1f}v4", x.share(v) * w, h), "#888");
+    out += text_at(x.share(v) * w, h + 16, "middle", tick_text(x, v));
+  }
+  out += line(fmt::format("M0 0V{:.1f}H{:.1f}", h, w), "#888");
+  out += text_at(w / 2, h + 33, "middle", panel.x_label);
+  return out + text_at(-h / 2, -42, "middle", panel.y_label, " transform=\"rotate(-90)\"");
+}
+
+std::string draw_panel(const Panel& panel, const Layout& layout) {
+  const double w = layout.width - kLeft - kRight, h = layout.height - kTop - kBottom;
+  const Axis x = axis_of(panel, &Series::x, std::max(2, static_cast<int>(w / 50)));
+  const Axis y = axis_of(panel, &Series::y, std::max(2, static_cast<int>(h / 35)));
+  std::string out = draw_axes(panel, x, y, w, h);
   for (std::size_t i = 0; i < panel.series.size(); ++i)
-    out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"/>\n",
-                       path_of(panel.series[i], x, y, w, h), colours[i % colours.size()]);
-  return out + "</g>\n";
+    out += line(path_of(panel.series[i], x, y, w, h), kColours[i % kColours.size()], 1.6);
+  return out;
 }
 
 std::string draw_legend(const std::vector<Panel>& panels) {
   std::string out;
-  double x = left;
+  double x = kLeft;
   const auto most = std::max_element(panels.begin(), panels.end(),
                                      [](const Panel& a, const Panel& b) { return a.series.size() < b.series.size(); });
   for (std::size_t i = 0; i < most->series.size(); ++i) {
-    out += fmt::format(
-        "<path d=\"M{:.1f} 14h22\" stroke=\"{}\" stroke-width=\"3\"/><text x=\"{:.1f}\" y=\"18\">{}</text>\n", x,
-        colours[i % colours.size()], x + 28, escape_markup(most->series[i].name));
-    x += 44 + 7.0 * static_cast<double>(most->series[i].name.size());
+    const auto& name = most->series[i].name;
+    out += line(fmt::format("M{:.1f} 14h22", x), kColours[i % kColours.size()], 3) + text_at(x + 28, 18, "start", name);
+    x += 46 + kCharacter * static_cast<double>(name.size());
+  }
+  return out;
+}
+
+std::string moved(double x, double y, const std::string& content) {
+  return fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n", x, y, content);
+}
+
+double longest_name(const std::vector<BarPanel>& panels) {
+  std::size_t most = 0;
+  for (const auto& panel : panels)
+    for (const auto& bar : panel.bars) most = std::max(most, bar.name.size());
+  return kCharacter * static_cast<double>(most);
+}
+
+Axis axis_of(const BarPanel& panel) {
+  double low = 0, high = 0;
+  for (const auto& bar : panel.bars) {
+    if (!std::isfinite(bar.value)) continue;
+    const double spread = std::isfinite(bar.spread) ? bar.spread : 0;
+    low = std::min(low, bar.value - spread);
+    high = std::max(high, bar.value + spread);
+  }
+  return axis_over(low, high, 4);
+}
+
+std::string draw_bar(const Bar& bar, const Axis& axis, double w, double y) {
+  const double middle = y + kBarHeight / 2;
+  std::string out = text_at(-8, middle + 4, "end", bar.name);
+  if (!std::isfinite(bar.value)) return out + text_at(axis.share(0) * w + 6, middle + 4, "start", "no value");
+  const double from = axis.share(std::min(0.0, bar.value)) * w, to = axis.share(std::max(0.0, bar.value)) * w;
+  out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", from, y + 4,
+                     to - from, kBarHeight - 8, kColours[2]);
+  if (std::isfinite(bar.spread) && bar.spread > 0)
+    out += line(
+        fmt::format("M{0:.1f} {2:.1f}H{1:.1f}M{0:.1f} {3:.1f}v6M{1:.1f} {3:.1f}v6",
+                    axis.share(bar.value - bar.spread) * w, axis.share(bar.value + bar.spread) * w, middle, middle - 3),
+        kColours[0]);
+  return out + text_at(w + kValue - 4, middle + 4, "end", fmt::format("{:.3g}", bar.value));
+}
+
+std::string draw_bar_panel(const BarPanel& panel, double w) {
+  const Axis axis = axis_of(panel);
+  const double h = kBarHeight * static_cast<double>(panel.bars.size());
+  std::string out = text_at(w / 2, -10, "middle", panel.title, " font-weight=\"bold\"");
+  for (const double v : axis.ticks()) {
+    out += line(fmt::format("M{:.1f} 0v{:.1f}", axis.share(v) * w, h), tick_text(axis, v) == "0" ? "#888" : "#e4e4e4");
+    out += text_at(axis.share(v) * w, h + 16, "middle", tick_text(axis, v));
+  }
+  double y = 0;
+  for (const auto& bar : panel.bars) {
+    out += draw_bar(bar, axis, w, y);
+    y += kBarHeight;
   }
   return out;
 }
@@ -120,19 +172,28 @@ std::string escape_markup(const std::string& text) {
   return out;
 }
 
-std::string draw_panels(const std::vector<Panel>& panels, int columns) {
-  const int n = static_cast<int>(panels.size());
-  columns = std::clamp(columns, 1, std::max(n, 1));
-  const double width = columns * panel_width, height = legend + (n + columns - 1) / columns * panel_height;
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"11\" fill=\"#222\" role=\"img\">\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-      width, height);
+std::string draw_panels(const std::string& title, const std::vector<Panel>& panels, const Layout& layout) {
+  const int n = static_cast<int>(panels.size()), columns = std::clamp(layout.columns, 1, std::max(n, 1));
+  std::string out = open_svg(title, columns * layout.width, kLegend + (n + columns - 1) / columns * layout.height);
   if (n > 0) out += draw_legend(panels);
   for (int i = 0; i < n; ++i)
-    out +=
-        draw_panel(panels[static_cast<std::size_t>(i)], i % columns * panel_width, legend + i / columns * panel_height);
+    out += moved(i % columns * layout.width + kLeft, kLegend + i / columns * layout.height + kTop,
+                 draw_panel(panels[static_cast<std::size_t>(i)], layout));
+  return out + "</svg>\n";
+}
+
+std::string draw_bars(const std::string& title, const std::vector<BarPanel>& panels, int columns) {
+  const int n = static_cast<int>(panels.size());
+  columns = std::clamp(columns, 1, std::max(n, 1));
+  constexpr double w = 240;
+  const double names = longest_name(panels) + 18, width = names + w + kValue + kRight;
+  std::size_t most = 0;
+  for (const auto& panel : panels) most = std::max(most, panel.bars.size());
+  const double height = kTop + kBarHeight * static_cast<double>(most) + kBottom;
+  std::string out = open_svg(title, columns * width, (n + columns - 1) / columns * height);
+  for (int i = 0; i < n; ++i)
+    out += moved(i % columns * width + names, i / columns * height + kTop,
+                 draw_bar_panel(panels[static_cast<std::size_t>(i)], w));
   return out + "</svg>\n";
 }
 

@@ -23,11 +23,12 @@ Plot PlotTracks::operator()(const Track& truth, const Track& predicted, Context&
   std::vector<Panel> panels;
   const auto most = std::min<Eigen::Index>({dimensions, truth.dimension(), predicted.dimension()});
   for (Eigen::Index d = 0; d < most; ++d)
-    panels.push_back({context.item,
-                      "time, s",
-                      "parameter " + std::to_string(d + 1),
+    panels.push_back({"parameter " + std::to_string(d + 1),
+                      d + 1 == most ? "time, s" : "",
+                      "",
                       {line("truth", truth, d), line("prediction", predicted, d)}});
-  return {context.item, draw_panels(panels, 3)};
+  const std::string title = context.item.empty() ? "truth and prediction" : context.item;
+  return {title, draw_panels(title, panels, {1, 720, 200})};
 }
 
 void describe(Description<PlotTracks>& d) {

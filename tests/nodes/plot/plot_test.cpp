@@ -3,9 +3,12 @@
 
 #include <cmath>
 
+#include "nodes/plot/axis.h"
+#include "nodes/plot/bars.h"
 #include "nodes/plot/mean_trajectory.h"
 #include "nodes/plot/svg.h"
 #include "nodes/plot/tracks.h"
+#include "nodes/plot/trajectories.h"
 
 namespace talkgraph {
 namespace {
@@ -20,15 +23,73 @@ Track constant(int frames, double value) {
 }
 
 TEST(Svg, DrawsLinesThroughTheirPoints) {
-  const std::string svg = draw_panels({{"t", "x", "y", {{"s", {0, 1}, {0, 1}}}}}, 1);
-  EXPECT_THAT(svg, HasSubstr("M0.0 152.0L256.0 0.0"));
+  const std::string svg = draw_panels("t & u", {{"t", "x", "y", {{"s", {0, 1}, {0, 1}}}}}, {1, 268, 170});
+  EXPECT_THAT(svg, HasSubstr("M0.0 100.0L200.0 0.0"));
+  EXPECT_THAT(svg, HasSubstr("<title>t &amp; u</title>"));
 }
 
 TEST(Svg, SurvivesNothingConstantsAndNaN) {
-  EXPECT_THAT(draw_panels({}, 3), HasSubstr("</svg>"));
-  const std::string svg = draw_panels({{"t", "", "", {{"s", {0, 1, 2}, {NAN, 5, 5}}, {"empty", {}, {}}}}}, 2);
+  EXPECT_THAT(draw_panels("", {}), HasSubstr("</svg>"));
+  const std::string svg = draw_panels("", {{"t", "", "", {{"s", {0, 1, 2}, {NAN, 5, 5}}, {"empty", {}, {}}}}});
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(svg, Not(HasSubstr("inf")));
+}
+
+TEST(Svg, LetsANaNInterruptALine) {
+  const std::string svg = draw_panels("", {{"", "", "", {{"s", {0, 1, 2, 3, 4}, {0, 1, NAN, 1, 0}}}}}, {1, 268, 170});
+  EXPECT_THAT(svg, HasSubstr("M0.0 100.0L50.0 0.0M150.0 0.0L200.0 100.0"));
+}
+
+TEST(Axis, HasRoundLimitsAndTicks) {
+  const Axis a = axis_over(-0.13, 0.55, 4);
+  EXPECT_NEAR(a.low, -0.2, 1e-12);
+  EXPECT_NEAR(a.high, 0.6, 1e-12);
+  ASSERT_EQ(a.ticks().size(), 5u);
+  EXPECT_EQ(tick_text(a, a.ticks()[1]), "0");
+  EXPECT_EQ(tick_text(a, a.ticks()[3]), "0.4");
+}
+
+TEST(Axis, SurvivesConstantsOfAnySizeAndNothing) {
+  for (const double v : {0.0, 5.0, -1e-9, 3e12}) {
+    const Axis a = axis_over(v, v, 4);
+    EXPECT_LT(a.low, v);
+    EXPECT_GT(a.high, v);
+    EXPECT_LT(a.ticks().size(), 12u);
+  }
+  EXPECT_EQ(axis_over(INFINITY, -INFINITY, 4).high, 1);
+}
+
+TEST(Bars, EndWhereTheirValuesAre) {
+  const std::string svg = draw_bars("", {{"acc", {{"a", 1, NAN}, {"b", 0.5, 0.25}, {"c", NAN, NAN}}}});
+  EXPECT_THAT(svg, HasSubstr("x=\"0.0\" y=\"4.0\" width=\"240.0\""));
+  EXPECT_THAT(svg, HasSubstr("x=\"0.0\" y=\"28.0\" width=\"120.0\""));
+  EXPECT_THAT(svg, HasSubstr("M60.0 36.0H180.0"));  // the whisker
+  EXPECT_THAT(svg, HasSubstr("no value"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(draw_bars("", {}), HasSubstr("</svg>"));
+}
+
+TEST(PlotBars, DrawsColumnsOfATable) {
+  const Table t{"scores", "method", {"acc", "acc std"}, {"ridge"}, {{0.5, 0.1}}};
+  const Plot p = PlotBars{.columns = {"acc"}}(t);
+  EXPECT_EQ(p.title, "scores");
+  EXPECT_THAT(p.svg, HasSubstr(">ridge<"));
+  try {
+    PlotBars{.columns = {"amse"}}(t);
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("no column \"amse\" to draw; it has acc, acc std"));
+  }
+}
+
+TEST(PlotTrajectories, ShowsTheFirstSequencesThatBothHave) {
+  const Plot p =
+      PlotTrajectories{.sequences = 1}({{"lost", constant(5, 0)}, {"x", constant(5, 1)}, {"y", constant(5, 1)}},
+                                       {{"x", constant(5, 2)}, {"y", constant(5, 2)}});
+  EXPECT_THAT(p.svg, HasSubstr(">x<"));
+  EXPECT_THAT(p.svg, Not(HasSubstr("lost")));
+  EXPECT_THAT(p.svg, Not(HasSubstr(">y<")));
+  EXPECT_THAT(PlotTrajectories{}({}, {}).svg, HasSubstr("</svg>"));
 }
 
 TEST(Svg, EscapesMarkup) { EXPECT_EQ(escape_markup("<a & \"b\">"), "&lt;a &amp; &quot;b&quot;&gt;"); }
@@ -43,6 +104,7 @@ TEST(MeanTrajectory, ShowsTheMostFrequentPhonesAndNoSilence) {
   EXPECT_THROW(MeanTrajectory{.dimension = 2}({{"x", constant(8, 1)}}, {{"x", constant(8, 2)}}, {{"x", l}}),
                std::runtime_error);
   EXPECT_THAT(MeanTrajectory{}({}, {}, {}).svg, HasSubstr("</svg>"));
+  EXPECT_THROW(MeanTrajectory{}({{"x", constant(8, 1)}}, {{"x", constant(5, 2)}}, {{"x", l}}), std::runtime_error);
 }
 
 TEST(PlotTracks, ShowsNoMoreDimensionsThanThereAre) {
