@@ -10,22 +10,23 @@ namespace talkgraph {
 
 /// How espeak-ng shall sound.
 struct Voice {
-  std::string name = "en-us";  ///< a voice of espeak-ng that speaks English: "en-us", "en-us+f3"
-  double rate = 165;           ///< words per minute, 80 to 450
-  double pitch = 50;           ///< 0 to 100
-  double volume = 100;         ///< 0 to 200; sound above 100 may clip
+  /// A voice of espeak-ng that speaks English: "en-us", "en-us+f3". Voices
+  /// with flutter or breath, unlike this one, sound a little different every time.
+  std::string name = "en-us+michel";
+  double rate = 165;    ///< words per minute, 80 to 450
+  double pitch = 50;    ///< 0 to 100
+  double volume = 100;  ///< 0 to 200; sound above 100 may clip
 };
 
 /// Speech with what is said in it. Phones and words cover the whole sound
-/// without gaps, "sil" in pauses.
+/// without gaps, "sil" in pauses; words are in lower case.
 struct Utterance {
   Audio audio;  ///< 22050 Hz
   PhoneTrack phones;
   WordTrack words;
 };
 
-/// Speaks English text through espeak-ng; the same call gives the same sound.
-/// May be called from any thread; calls wait for each other. Throws
+/// Speaks English text through espeak-ng. May be called from any thread; calls wait for each other. Throws
 /// std::invalid_argument if the voice is unknown, its numbers are out of range
 /// or nothing in the text can be spoken; std::runtime_error if espeak-ng was
 /// switched off at build time, its data are missing, or it speaks a phoneme
@@ -37,7 +38,7 @@ Utterance speak(const std::string& text, const Voice& voice);
 std::vector<std::string> pronounce(const std::string& word);
 
 /// CMU phones of an espeak-ng phoneme of American English: one, or two for
-/// diphthongs before r; empty for a pause. Throws std::runtime_error on one
+/// vowels coloured by r; none for a pause or a mere glide. Throws std::runtime_error on one
 /// that is not known.
 std::vector<std::string> cmu_phones(const std::string& espeak_phoneme);
 
