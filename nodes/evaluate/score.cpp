@@ -8,10 +8,12 @@ namespace {
 
 double deviation(const Eigen::VectorXd& x) { return std::sqrt((x.array() - x.mean()).square().mean()); }
 
+/// More than rounding of a constant.
+bool varies(const Eigen::VectorXd& x) { return deviation(x) > 1e-12 * x.cwiseAbs().maxCoeff(); }
+
 double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  const double product = deviation(a) * deviation(b);
-  if (product < 1e-12) return 0;
-  return ((a.array() - a.mean()) * (b.array() - b.mean())).mean() / product;
+  if (!varies(a) || !varies(b)) return 0;
+  return ((a.array() - a.mean()) * (b.array() - b.mean())).mean() / (deviation(a) * deviation(b));
 }
 
 /// The rows that count, of the common beginning.
@@ -34,6 +36,9 @@ std::optional<Scores> Score::operator()(const Track& truth, const Track& predict
     throw std::runtime_error("truth has " + std::to_string(truth.frames()) + " frames, the prediction " +
                              std::to_string(predicted.frames()));
   const auto frames = std::min(truth.frames(), predicted.frames());
+  if (speech && std::abs(static_cast<Eigen::Index>(speech->frames.size()) - frames) > 2)
+    throw std::runtime_error("speech is marked for " + std::to_string(speech->frames.size()) + " frames of " +
+                             std::to_string(frames));
   const Eigen::MatrixXd z = marked(truth.values, frames, speech), p = marked(predicted.values, frames, speech);
   if (z.rows() == 0) return {};
   if (!z.allFinite() || !p.allFinite()) throw std::runtime_error("NaN or infinite values cannot be scored");
@@ -49,8 +54,7 @@ std::optional<Scores> Score::operator()(const Track& truth, const Track& predict
   s.values["l1"] = error.mean();
   s.values["l2"] = std::sqrt(amse);
   s.values["linf"] = error.rowwise().maxCoeff().mean();
-  const double range = deviation(z.col(0));
-  s.values["range"] = range > 0 ? deviation(p.col(0)) / range : NAN;
+  s.values["range"] = varies(z.col(0)) ? deviation(p.col(0)) / deviation(z.col(0)) : NAN;
   return s;
 }
 

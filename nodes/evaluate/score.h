@@ -7,15 +7,17 @@
 namespace talkgraph {
 
 /// Scores of one sequence on the frames that `speech` marks (all if it is not
-/// given), spec §6:
+/// given), spec §6. Tracks are normalised: a truth of zero is the mean face.
 ///   amse        mean squared error over frames and dimensions (Eqn 6.5)
 ///   amse_share  amse / mean square of the truth: 1 is what predicting the mean (zero) gives
 ///   acc         correlation averaged over dimensions (Eqn 6.9 with standard deviations);
 ///               0 for a dimension that does not vary
 ///   l1, l2, linf  Eqns 6.6 to 6.8, absolute values
-///   range       standard deviation of the first dimension, prediction / truth
-/// Nothing is given for a sequence without a marked frame. Throws
-/// std::runtime_error if dimensions differ, or lengths by more than two frames.
+///   range       range of motion: standard deviation of the first dimension, prediction / truth
+/// amse_share is NaN if the truth is zero all over, range if its first
+/// dimension does not vary; evaluate.summary leaves NaN out. Nothing is given for
+/// a sequence without a marked frame. Throws std::runtime_error if dimensions
+/// differ, lengths differ by more than two frames, or a value is not finite.
 struct Score {
   std::optional<Scores> operator()(const Track& truth, const Track& predicted, const Mask* speech) const;
 };

@@ -26,8 +26,9 @@ void write_whole(const std::filesystem::path& file, std::string_view text) {
   std::ofstream out(temporary, std::ios::binary);
   out << text;
   out.close();
-  if (!out) throw std::runtime_error(file.string() + ": cannot be written");
-  std::filesystem::rename(temporary, file);
+  if (out) std::filesystem::rename(temporary, file, error);
+  if (!out || error)
+    throw std::runtime_error(file.string() + ": cannot be written; is the folder writable, is there room on the disk?");
 }
 
 std::string to_csv(const Table& table) {

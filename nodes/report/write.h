@@ -6,8 +6,9 @@
 namespace talkgraph {
 
 /// Writes report.html, one page with all tables, plots and clips, which needs
-/// no other file than the clips, each plot as plots/NAME.svg, and metrics.json
-/// with the numbers of all tables.
+/// no other file than the clips and pictures it names, each plot as
+/// plots/NAME.svg, and metrics.json with the numbers of all tables. Without any
+/// of them it still writes a page. Errors: a file cannot be written.
 struct WriteReport {
   std::string title = "talkgraph report";
   std::string notes;  ///< a paragraph under the title

@@ -5,7 +5,8 @@
 
 namespace talkgraph {
 
-/// Writes a table as NAME.csv and NAME.json below the run folder.
+/// Writes a table as NAME.csv and NAME.json below the run folder. Errors: a file
+/// cannot be written.
 struct WriteTable {
   std::string name = "table";
 

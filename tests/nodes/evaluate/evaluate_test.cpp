@@ -41,6 +41,23 @@ TEST(Score, OfTheMeanHasShareOne) {
   EXPECT_EQ(s["amse"], 0);
 }
 
+TEST(Score, DoesNotDependOnTheUnit) {
+  const Eigen::MatrixXd z = Eigen::MatrixXd::Random(20, 3), p = Eigen::MatrixXd::Random(20, 3);
+  auto large = Score{}(track(z), track(p), nullptr)->values;
+  auto small = Score{}(track(1e-9 * z), track(1e-9 * p), nullptr)->values;
+  for (const char* name : {"acc", "amse_share", "range"}) EXPECT_NEAR(small[name], large[name], 1e-9) << name;
+}
+
+TEST(Score, OfAConstantTruthHasNoShareOrRange) {
+  const Eigen::MatrixXd p = Eigen::MatrixXd::Random(10, 2);
+  auto s = Score{}(track(Eigen::MatrixXd::Zero(10, 2)), track(p), nullptr)->values;
+  EXPECT_TRUE(std::isnan(s["amse_share"]));
+  EXPECT_TRUE(std::isnan(s["range"]));
+  s = Score{}(track(Eigen::MatrixXd::Constant(10, 2, 0.1)), track(p), nullptr)->values;
+  EXPECT_EQ(s["acc"], 0);
+  EXPECT_TRUE(std::isnan(s["range"]));
+}
+
 TEST(Score, CountsSpeechFramesOnly) {
   Eigen::MatrixXd z(4, 1), p(4, 1);
   z << 1, 2, 3, 100;
@@ -55,6 +72,9 @@ TEST(Score, RefusesWhatDoesNotFit) {
   EXPECT_NO_THROW(Score{}(zeros(10, 2), zeros(12, 2), nullptr));
   EXPECT_THROW(Score{}(zeros(10, 2), zeros(13, 2), nullptr), std::runtime_error);
   EXPECT_THROW(Score{}(zeros(10, 2), zeros(10, 3), nullptr), std::runtime_error);
+  const Mask near{std::vector<std::int64_t>(8, 1)}, far{std::vector<std::int64_t>(7, 1)};
+  EXPECT_NO_THROW(Score{}(zeros(10, 2), zeros(10, 2), &near));
+  EXPECT_THROW(Score{}(zeros(10, 2), zeros(10, 2), &far), std::runtime_error);
   Track broken = zeros(10, 2);
   broken.values(3, 1) = NAN;
   EXPECT_THROW(Score{}(zeros(10, 2), broken, nullptr), std::runtime_error);

@@ -6,7 +6,9 @@
 #include <fstream>
 
 #include "nodes/report/files.h"
+#include "nodes/report/page.h"
 #include "nodes/report/write.h"
+#include "nodes/report/write_plot.h"
 #include "nodes/report/write_table.h"
 
 namespace talkgraph {
@@ -47,6 +49,41 @@ TEST_F(Report, WritesOnePageWithEverything) {
   EXPECT_THAT(page, HasSubstr("src=\"clips/s1.mp4\""));
   EXPECT_EQ(read("plots/p.svg"), "<svg></svg>");
   EXPECT_EQ(Json::parse(read("metrics.json"))["scores"]["rows"]["c"]["n"], 4);
+}
+
+TEST_F(Report, EscapesNamesAndPaths) {
+  table.rows[1] = "<script>";
+  WriteReport{"t", "a < b"}({{"scores", table}}, {{"p", {"R&D", "<svg></svg>"}}},
+                            {{"a \"b\"", {"clips/50% #1.mp4", ""}}, {"strip", {"strips/s.png", ""}}}, context);
+  const std::string page = read("report.html");
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">&lt;script&gt;</th>"));
+  EXPECT_THAT(page, HasSubstr("<p>a &lt; b</p>"));
+  EXPECT_THAT(page, HasSubstr("<figcaption>R&amp;D</figcaption>"));
+  EXPECT_THAT(page, HasSubstr("aria-label=\"a &quot;b&quot;\" src=\"clips/50%25%20%231.mp4\""));
+  EXPECT_THAT(page, HasSubstr("<img src=\"strips/s.png\" alt=\"strip\">"));
+}
+
+TEST_F(Report, ShowsMeansWithTheirDeviations) {
+  const std::string html =
+      html_table("t", {"", "method", {"acc", "acc std", "x std"}, {"a", "b"}, {{0.5, 0.125, 1}, {0.25, NAN, NAN}}});
+  EXPECT_THAT(html, HasSubstr("<caption>t</caption>"));
+  EXPECT_THAT(html, HasSubstr("<th scope=\"col\">acc</th><th scope=\"col\">x std</th></tr>"));
+  EXPECT_THAT(html, HasSubstr("<td>0.5 ± 0.12</td><td>1</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>0.25</td><td>–</td>"));
+}
+
+TEST_F(Report, IsWrittenOfNothingAsWell) {
+  EXPECT_EQ(WriteReport{}({}, {}, {}, context).path, "report.html");
+  EXPECT_EQ(read("metrics.json"), "{}\n");
+}
+
+TEST_F(Report, WritesPlots) {
+  const Plot plot{"p", "<svg></svg>"};
+  EXPECT_EQ((WritePlot{"one"}(plot, context)).path, "plots/one.svg");
+  EXPECT_EQ(read("plots/one.svg"), "<svg></svg>");
+  EXPECT_THROW(WritePlot{}(plot, context), std::invalid_argument);
+  context.item = "clip";
+  EXPECT_EQ(WritePlot{}(plot, context).path, "plots/clip.svg");
 }
 
 TEST_F(Report, SaysWhichFileCannotBeWritten) {

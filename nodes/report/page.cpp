@@ -1,0 +1,117 @@
+#include "nodes/report/page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "nodes/plot/svg.h"
+
+namespace talkgraph {
+namespace {
+
+constexpr const char* kStyle = R"(
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; }
+h1, h2 { line-height: 1.2; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; margin: 1rem 0 2rem; }
+caption { text-align: left; font-weight: 600; padding-bottom: .3rem; }
+th, td { padding: .3rem .7rem; border-bottom: 1px solid #ddd; text-align: right; font-variant-numeric: tabular-nums; }
+th:first-child { text-align: left; }
+tbody th { font-weight: normal; }
+tbody tr:hover { background: #f4f4f4; }
+svg { max-width: 100%; height: auto; }
+.clips { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(24rem, 100%), 1fr)); gap: 1rem; }
+figure { margin: 0 0 1.5rem; }
+video, img { width: 100%; background: #000; }
+figcaption { color: #444; }
+)";
+
+std::string number(double v) { return fmt::format("{:.4g}", v); }
+
+/// Column that holds the deviations of column c, or -1.
+std::ptrdiff_t deviation_of(const Table& table, std::size_t c) {
+  const auto it = std::find(table.columns.begin(), table.columns.end(), table.columns[c] + " std");
+  return it == table.columns.end() ? -1 : it - table.columns.begin();
+}
+
+bool is_deviation(const Table& table, std::size_t c) {
+  const std::string& name = table.columns[c];
+  return name.ends_with(" std") &&
+         std::find(table.columns.begin(), table.columns.end(), name.substr(0, name.size() - 4)) != table.columns.end();
+}
+
+std::string cell(const Table& table, std::size_t row, std::size_t c) {
+  const double value = table.cells[row][c];
+  if (std::isnan(value)) return "<td>–</td>";
+  const auto deviation = deviation_of(table, c);
+  if (deviation < 0) return "<td>" + number(value) + "</td>";
+  const double spread = table.cells[row][static_cast<std::size_t>(deviation)];
+  if (std::isnan(spread)) return "<td>" + number(value) + "</td>";
+  return fmt::format("<td>{:.3g} ± {:.2g}</td>", value, spread);
+}
+
+/// A relative path as a URL: what is no letter, digit or one of "-._~/" is written as %XX.
+std::string url(const std::string& path) {
+  std::string out;
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 128 && (std::isalnum(byte) || std::string_view("-._~/").find(c) != std::string_view::npos))
+      out += c;
+    else
+      out += fmt::format("%{:02X}", byte);
+  }
+  return out;
+}
+
+bool is_picture(const std::string& path) {
+  return path.ends_with(".png") || path.ends_with(".jpg") || path.ends_with(".svg");
+}
+
+}  // namespace
+
+std::string html_open(const std::string& title, const std::string& notes) {
+  std::string page = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n"
+      "<main>\n<h1>{0}</h1>\n",
+      escape_markup(title), kStyle);
+  if (!notes.empty()) page += "<p>" + escape_markup(notes) + "</p>\n";
+  return page;
+}
+
+std::string html_close() { return "</main>\n</body>\n</html>\n"; }
+
+std::string html_table(const std::string& name, const Table& table) {
+  std::string out =
+      fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr><th scope=\"col\">{}</th>",
+                  escape_markup(table.title.empty() ? name : table.title), escape_markup(table.corner));
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (!is_deviation(table, c)) out += "<th scope=\"col\">" + escape_markup(table.columns[c]) + "</th>";
+  out += "</tr></thead>\n<tbody>\n";
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    out += "<tr><th scope=\"row\">" + escape_markup(table.rows[r]) + "</th>";
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      if (!is_deviation(table, c)) out += cell(table, r, c);
+    out += "</tr>\n";
+  }
+  return out + "</tbody>\n</table></div>\n";
+}
+
+std::string html_plot(const Plot& plot) {
+  return fmt::format("<figure><figcaption>{}</figcaption>\n<div class=\"wide\">{}</div></figure>\n",
+                     escape_markup(plot.title), plot.svg);
+}
+
+std::string html_clip(const std::string& name, const Artifact& clip) {
+  const std::string label = escape_markup(name);
+  const std::string shown =
+      is_picture(clip.path)
+          ? fmt::format("<img src=\"{}\" alt=\"{}\">", url(clip.path), label)
+          : fmt::format("<video controls preload=\"metadata\" aria-label=\"{1}\" src=\"{0}\"></video>", url(clip.path),
+                        label);
+  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", shown, label);
+}
+
+}  // namespace talkgraph

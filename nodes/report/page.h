@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nodes/types/report.h"
+
+namespace talkgraph {
+
+// Parts of an HTML page. Names and titles are escaped.
+
+std::string html_open(const std::string& title, const std::string& notes);
+std::string html_close();
+
+/// A table with its title as caption; a column and its "NAME std" share cells, "0.59 ± 0.08".
+std::string html_table(const std::string& name, const Table& table);
+std::string html_plot(const Plot& plot);
+/// A player, or a picture, of a file beside the page.
+std::string html_clip(const std::string& name, const Artifact& clip);
+
+}  // namespace talkgraph

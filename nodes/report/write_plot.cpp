@@ -1,0 +1,24 @@
+#include "nodes/report/write_plot.h"
+
+#include <stdexcept>
+
+#include "nodes/report/files.h"
+
+namespace talkgraph {
+
+Artifact WritePlot::operator()(const Plot& plot, Context& context) const {
+  const std::string& file = name.empty() ? context.item : name;
+  if (file.empty()) throw std::invalid_argument("a plot that is not an item of a stream needs the parameter \"name\"");
+  const std::string path = (std::filesystem::path(folder) / (file + ".svg")).string();
+  write_whole(context.folder / path, plot.svg);
+  return {path, plot.title};
+}
+
+void describe(Description<WritePlot>& d) {
+  d.type("report.write_plot").summary("writes a plot as an SVG file").sink();
+  d.input("plot").output("file");
+  d.param("name", &WritePlot::name).doc("file name without its ending; of the item if empty");
+  d.param("folder", &WritePlot::folder).doc("below the run folder");
+}
+
+}  // namespace talkgraph
