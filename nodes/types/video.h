@@ -31,6 +31,8 @@ class VideoSource {
   virtual std::string name() const = 0;
   /// Changes whenever the pictures do.
   virtual std::string content_key() const = 0;
+  /// Frames that the decoder complained about.
+  virtual std::vector<std::int64_t> decoding_errors() const { return {}; }
 };
 
 /// A lazy handle: nothing is decoded or rendered until it is opened.

@@ -1,0 +1,72 @@
+#include "nodes/corpus/manifest.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "nodes/corpus/labels.h"
+#include "nodes/corpus/manifest_file.h"
+#include "nodes/corpus/tables.h"
+#include "nodes/corpus/text.h"
+#include "nodes/media/audio_file.h"
+#include "nodes/media/video_file.h"
+
+namespace talkgraph {
+namespace {
+
+Track read_visual(const ManifestClip& clip) {
+  NumberTable table = read_table(clip.visual, clip.visual_dataset);
+  return {std::move(table.values), *clip.visual_rate, 0.5 / clip.visual_rate->value(), std::move(table.names)};
+}
+
+Video open(const std::string& path, const std::optional<Rational>& rate) {
+  return std::filesystem::is_directory(path) ? open_frame_folder(path, *rate) : open_video(path);
+}
+
+/// The transcript as given, else from the word times.
+std::optional<Transcript> transcript(const ManifestClip& clip, const std::optional<WordTrack>& words) {
+  if (!clip.transcript_file.empty()) return Transcript{read_text_file(clip.transcript_file)};
+  if (!clip.transcript.empty()) return Transcript{clip.transcript};
+  if (words) return transcript_of(*words);
+  return {};
+}
+
+Recording read_clip(const ManifestClip& clip) {
+  Recording recording;
+  recording.id = clip.id;
+  recording.split = clip.split;
+  recording.audio = [path = clip.audio.empty() ? clip.video : clip.audio] { return read_audio(path); };
+  if (!clip.video.empty()) recording.video = [path = clip.video, rate = clip.rate] { return open(path, rate); };
+  if (!clip.visual.empty()) recording.visual = read_visual(clip);
+  if (!clip.phones.empty()) recording.phones = read_phones(clip.phones);
+  if (!clip.words.empty()) recording.words = read_words(clip.words);
+  recording.transcript = transcript(clip, recording.words);
+  if (!clip.landmarks.empty()) {
+    const Rational rate = clip.rate ? *clip.rate : recording.video().source->rate();
+    recording.landmarks = read_landmarks(clip.landmarks, rate, clip.landmark_scheme);
+  }
+  return recording;
+}
+
+}  // namespace
+
+Stream<Recording> Manifest::operator()() const {
+  Diagnostics diagnostics;
+  auto clips = read_manifest(file.path, diagnostics);
+  if (!diagnostics.ok()) throw std::runtime_error(diagnostics.str());
+  const std::size_t count = clips.size();
+  return Stream<Recording>(
+      [clips = std::move(clips), i = std::size_t{0}]() mutable -> std::optional<Item<Recording>> {
+        if (i == clips.size()) return {};
+        const ManifestClip& clip = clips[i++];
+        return Item<Recording>{clip.id, read_clip(clip)};
+      },
+      count);
+}
+
+void describe(Description<Manifest>& d) {
+  d.type("corpus.manifest").summary("any recordings, as a JSON file describes them");
+  d.output("recording");
+  d.param("file", &Manifest::file).required().doc("the manifest; docs/manifest.md says what stands in it");
+}
+
+}  // namespace talkgraph

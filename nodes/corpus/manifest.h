@@ -1,0 +1,20 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/recording.h"
+
+namespace talkgraph {
+
+/// Any recordings, as a JSON file describes them: docs/manifest.md. Files it names are
+/// taken from its own folder. Throws std::runtime_error: all that is wrong with the
+/// manifest, and all files that it names and that are missing, in one go with
+/// file:line:column when it starts; a malformed label, landmark or track file, with its
+/// line, when its clip's turn comes.
+struct Manifest {
+  FilePath file;
+
+  Stream<Recording> operator()() const;
+};
+void describe(Description<Manifest>& d);
+
+}  // namespace talkgraph

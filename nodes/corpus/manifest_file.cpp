@@ -1,0 +1,173 @@
+#include "nodes/corpus/manifest_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+
+#include "nodes/corpus/text.h"
+
+namespace talkgraph {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = LocatedJson::Kind;
+
+/// Reads the members of one JSON object, complaining of what is wrong with them.
+class Members {
+ public:
+  Members(const LocatedJson& json, const fs::path& folder, Diagnostics& diagnostics, std::vector<std::string> known)
+      : json_(json), folder_(folder), diagnostics_(diagnostics) {
+    for (const auto& member : json.members)
+      if (std::find(known.begin(), known.end(), member.key) == known.end())
+        diagnostics.error(member.key_place,
+                          fmt::format("unknown member \"{}\"{}", member.key, did_you_mean(member.key, known)));
+  }
+
+  bool has(const char* key) const { return json_.find(key); }
+  const LocatedJson& at(const char* key) const { return json_.find(key)->value; }
+
+  void text(const char* key, std::string& value) const {
+    if (!has(key)) return;
+    if (!at(key).is(Kind::text)) return wrong_kind(key, "a text");
+    value = at(key).scalar.get<std::string>();
+  }
+
+  void rate(const char* key, std::optional<Rational>& value) const {
+    if (!has(key)) return;
+    const LocatedJson& json = at(key);
+    if (!json.is(Kind::number) && !json.is(Kind::text)) return wrong_kind(key, "a rate such as 25 or \"30000/1001\"");
+    try {
+      const auto rate = Rational::parse(json.is(Kind::text) ? json.scalar.get<std::string>() : json.scalar.dump());
+      if (rate.num() <= 0) throw std::invalid_argument("must be positive");
+      value = rate;
+    } catch (const std::invalid_argument& e) {
+      diagnostics_.error(json.place, fmt::format("\"{}\": {}", key, e.what()));
+    }
+  }
+
+  /// A file (or folder, where one may stand) that must be there; its ending must be
+  /// one of `endings`, unless that is empty.
+  void path(const char* key, std::string& value, const std::vector<std::string>& endings, bool folder_too) const {
+    std::string name;
+    text(key, name);
+    if (name.empty()) return;
+    const fs::path full = (folder_ / name).lexically_normal();
+    const std::string ending = lower_case(full.extension().string());
+    if (fs::is_directory(full) ? !folder_too : !fs::is_regular_file(full))
+      diagnostics_.error(at(key).place,
+                         fmt::format("there is no {} \"{}\"", folder_too ? "file or folder" : "file", full.string()));
+    else if (!endings.empty() && !fs::is_directory(full) &&
+             std::find(endings.begin(), endings.end(), ending) == endings.end())
+      diagnostics_.error(at(key).place, fmt::format("\"{}\" must end in one of {}", key, fmt::join(endings, ", ")));
+    value = full.string();
+  }
+
+  void wrong_kind(const char* key, const char* expected) const {
+    diagnostics_.error(at(key).place,
+                       fmt::format("\"{}\": {} is expected, got {}", key, expected, at(key).kind_name()));
+  }
+
+  void error(std::string text) const { diagnostics_.error(json_.place, std::move(text)); }
+  Members within(const char* key, std::vector<std::string> known) const {
+    return {at(key), folder_, diagnostics_, std::move(known)};
+  }
+
+ private:
+  const LocatedJson& json_;
+  const fs::path& folder_;
+  Diagnostics& diagnostics_;
+};
+
+void read_visual(const Members& clip, ManifestClip& out) {
+  if (!clip.has("visual")) return;
+  if (!clip.at("visual").is(Kind::object)) return clip.wrong_kind("visual", "an object with \"file\" and \"rate\"");
+  const Members visual = clip.within("visual", {"file", "rate", "dataset"});
+  if (!visual.has("file")) visual.error("\"visual\" needs a \"file\"");
+  visual.path("file", out.visual, {".csv", ".npy", ".h5", ".hdf5"}, false);
+  visual.rate("rate", out.visual_rate);
+  visual.text("dataset", out.visual_dataset);
+  if (!out.visual_rate) out.visual_rate = out.rate;
+  if (!out.visual_rate) visual.error("\"visual\" needs a \"rate\", frames per second");
+}
+
+void read_landmarks(const Members& clip, ManifestClip& out) {
+  if (!clip.has("landmarks")) return;
+  if (clip.at("landmarks").is(Kind::text)) return clip.path("landmarks", out.landmarks, {".csv"}, true);
+  if (!clip.at("landmarks").is(Kind::object))
+    return clip.wrong_kind("landmarks", "a file, or an object with \"file\" and \"scheme\"");
+  const Members landmarks = clip.within("landmarks", {"file", "scheme"});
+  landmarks.path("file", out.landmarks, {".csv"}, true);
+  landmarks.text("scheme", out.landmark_scheme);
+}
+
+/// A transcript that ends in .txt names a file, any other is the text itself.
+void read_transcript(const Members& clip, ManifestClip& out) {
+  clip.text("transcript", out.transcript);
+  if (!out.transcript.ends_with(".txt")) return;
+  out.transcript.clear();
+  clip.path("transcript", out.transcript_file, {}, false);
+}
+
+ManifestClip read_clip(const LocatedJson& json, const fs::path& folder, const std::optional<Rational>& rate,
+                       Diagnostics& diagnostics) {
+  const Members clip(json, folder, diagnostics,
+                     {"id", "split", "rate", "video", "audio", "visual", "phones", "words", "transcript", "landmarks"});
+  ManifestClip out;
+  out.rate = rate;
+  clip.text("id", out.id);
+  clip.text("split", out.split);
+  clip.rate("rate", out.rate);
+  clip.path("video", out.video, {}, true);
+  clip.path("audio", out.audio, {}, false);
+  clip.path("phones", out.phones, {".lab", ".textgrid", ".align"}, false);
+  clip.path("words", out.words, {".lab", ".textgrid", ".align"}, false);
+  read_visual(clip, out);
+  read_landmarks(clip, out);
+  read_transcript(clip, out);
+  if (out.id.empty()) clip.error("a clip needs an \"id\"");
+  const bool folder_of_pictures = fs::is_directory(out.video);
+  if (out.audio.empty() && (out.video.empty() || folder_of_pictures))
+    clip.error("a clip needs sound: \"audio\", or a \"video\" file with a sound track");
+  if (folder_of_pictures && !out.rate) clip.error("a folder of pictures needs a \"rate\", frames per second");
+  if (!out.landmarks.empty() && out.video.empty() && !out.rate)
+    clip.error("landmarks without a \"video\" need a \"rate\", frames per second");
+  return out;
+}
+
+}  // namespace
+
+std::vector<ManifestClip> read_manifest(const std::string& file, Diagnostics& diagnostics) {
+  const auto source = std::make_shared<SourceText>(SourceText{file, read_text_file(file)});
+  const LocatedJson json = parse_json(source, diagnostics);
+  std::vector<ManifestClip> clips;
+  if (!diagnostics.ok()) return clips;
+  const fs::path folder = fs::absolute(file).parent_path();
+  if (!json.is(Kind::object)) {
+    diagnostics.error(json.place, "a manifest is an object with a list \"clips\"");
+    return clips;
+  }
+  const Members manifest(json, folder, diagnostics, {"$schema", "description", "rate", "clips"});
+  std::optional<Rational> rate;
+  manifest.rate("rate", rate);
+  if (!manifest.has("clips")) return manifest.error("a manifest needs a list \"clips\""), clips;
+  if (!manifest.at("clips").is(Kind::array)) return manifest.wrong_kind("clips", "a list of clips"), clips;
+  std::map<std::string, int> lines;
+  for (const auto& item : manifest.at("clips").items) {
+    if (!item.is(Kind::object)) {
+      diagnostics.error(item.place, "a clip is an object with an \"id\"");
+      continue;
+    }
+    clips.push_back(read_clip(item, folder, rate, diagnostics));
+    const std::string& id = clips.back().id;
+    const auto [other, fresh] = lines.emplace(id, item.place.line);
+    if (!fresh && !id.empty())
+      diagnostics.error(item.find("id")->value.place,
+                        fmt::format("the clip in line {} has the id \"{}\" already", other->second, id));
+  }
+  return clips;
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graph/json.h"
+#include "graph/rational.h"
+
+namespace talkgraph {
+
+/// One clip of a manifest; paths are absolute, or empty where nothing is given.
+struct ManifestClip {
+  std::string id;
+  std::string split = "train";
+  std::string video;  ///< file, or folder of pictures
+  std::string audio;
+  std::string words;
+  std::string phones;
+  std::string landmarks, landmark_scheme;
+  std::string visual, visual_dataset = "visual";
+  std::optional<Rational> visual_rate;
+  std::string transcript, transcript_file;  ///< one of them, or none
+  std::optional<Rational> rate;             ///< of a folder of pictures, of landmarks, of a visual track
+};
+
+/// Reads a manifest; whatever is wrong goes to `diagnostics`. Throws
+/// std::runtime_error if there is no such file.
+std::vector<ManifestClip> read_manifest(const std::string& file, Diagnostics& diagnostics);
+
+}  // namespace talkgraph

@@ -1,0 +1,59 @@
+#include "nodes/corpus/parts.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "nodes/media/check_video.h"
+
+namespace talkgraph {
+namespace {
+
+void check_landmarks(const LandmarkTrack& landmarks, const VideoSource& video) {
+  if (std::abs(std::ssize(landmarks.frames) - video.frames()) > 2)
+    throw std::runtime_error(fmt::format("{}: has {} frames, but its landmarks are of {}", video.name(), video.frames(),
+                                         landmarks.frames.size()));
+  if (landmarks.rate != video.rate())
+    throw std::runtime_error(fmt::format("{}: has {} frames per second, but its landmarks {}", video.name(),
+                                         video.rate().str(), landmarks.rate.str()));
+}
+
+}  // namespace
+
+RecordingParts Parts::operator()(const Recording& recording, Context& context) const {
+  RecordingParts parts{
+      recording.audio(), {}, recording.transcript, recording.words, recording.phones, recording.landmarks,
+      recording.visual};
+  const auto compare = [&](double seconds, const char* what) {
+    if (std::abs(parts.audio.seconds() - seconds) > tolerance)
+      context.log(fmt::format("{}: the sound lasts {:.2f} s, the {} {:.2f} s: do they belong together?", recording.id,
+                              parts.audio.seconds(), what, seconds));
+  };
+  if (parts.visual) compare(static_cast<double>(parts.visual->frames()) / parts.visual->rate.value(), "visual track");
+  if (!recording.video) return parts;
+  parts.video = recording.video();
+  if (!check) return parts;
+  parts.video = CheckVideo{}(*parts.video, context);
+  const VideoSource& source = *parts.video->source;
+  if (parts.landmarks) check_landmarks(*parts.landmarks, source);
+  compare(static_cast<double>(source.frames()) / source.rate().value(), "picture");
+  return parts;
+}
+
+void describe(Description<Parts>& d) {
+  d.type("corpus.parts").summary("takes a recording apart: sound, pictures, labels");
+  d.input("recording");
+  d.output("audio", &RecordingParts::audio);
+  d.output("video", &RecordingParts::video, "damaged frames marked");
+  d.output("transcript", &RecordingParts::transcript);
+  d.output("words", &RecordingParts::words);
+  d.output("phones", &RecordingParts::phones);
+  d.output("landmarks", &RecordingParts::landmarks);
+  d.output("visual", &RecordingParts::visual, "ready-made visual track");
+  d.param("check", &Parts::check).doc("decodes the video once to find damaged frames; off where only sound is used");
+  d.param("tolerance", &Parts::tolerance).positive().unit("s").doc("difference of sound and picture that is reported");
+}
+
+}  // namespace talkgraph

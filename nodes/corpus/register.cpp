@@ -1,0 +1,19 @@
+#include "nodes/corpus/register.h"
+
+#include "nodes/corpus/files.h"
+#include "nodes/corpus/grid.h"
+#include "nodes/corpus/manifest.h"
+#include "nodes/corpus/parts.h"
+#include "nodes/corpus/select.h"
+
+namespace talkgraph {
+
+void register_corpus(Registry& registry) {
+  registry.add<Grid>();
+  registry.add<Manifest>();
+  registry.add<SoundFiles>();
+  registry.add<Select>();
+  registry.add<Parts>();
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,57 @@
+#include "nodes/media/encode.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include "nodes/media/audio_file.h"
+#include "nodes/media/ffmpeg.h"
+#include "nodes/media/output_file.h"
+
+namespace talkgraph {
+namespace {
+
+bool takes_rate(ClipFormat format, double rate) {
+  constexpr std::array aac = {8000, 11025, 12000, 16000, 22050, 24000, 32000, 44100, 48000, 64000, 88200, 96000};
+  constexpr std::array opus = {8000, 12000, 16000, 24000, 48000};
+  const auto among = [rate](const auto& rates) { return std::find(rates.begin(), rates.end(), rate) != rates.end(); };
+  return format == ClipFormat::mp4 ? among(aac) : among(opus);
+}
+
+/// The sound at a rate that the format takes, padded or cut to `seconds`.
+Audio fitted(const Audio& audio, double seconds, ClipFormat format) {
+  Audio out = takes_rate(format, audio.rate) ? audio : resampled(audio, 48000);
+  const auto wanted = std::llround(seconds * out.rate);
+  const auto kept = std::min<Eigen::Index>(wanted, out.samples.size());
+  out.samples.conservativeResize(wanted);
+  out.samples.tail(wanted - kept).setZero();
+  return out;
+}
+
+}  // namespace
+
+Artifact Encode::operator()(const Video& video, const Audio* audio, Context& context) const {
+  const auto frames = video.source ? video.source->frames() : 0;
+  if (frames == 0) throw std::runtime_error("a clip without one frame cannot be encoded");
+  const double seconds = static_cast<double>(frames) / video.source->rate().value();
+  std::optional<Audio> sound;
+  if (audio) sound = fitted(*audio, seconds, format);
+  OutputFile file(context, folder, prefix, suffix, format == ClipFormat::mp4 ? ".mp4" : ".webm", "clip");
+  ffmpeg_encode(file.part(), video, sound ? &*sound : nullptr, {format, crf}, context);
+  return file.finish();
+}
+
+void describe(Description<Encode>& d) {
+  d.type("media.encode").summary("writes a clip: pictures, and sound of the same length").sink();
+  d.input("video").input("audio", "padded with silence or cut to the length of the picture").output("file");
+  d.param("folder", &Encode::folder).doc("below the run folder");
+  d.param("prefix", &Encode::prefix).doc("in front of the item's name");
+  d.param("suffix", &Encode::suffix).doc("behind the item's name");
+  d.param("format", &Encode::format).doc("mp4: H.264 and AAC; webm: VP9 and Opus");
+  d.param("crf", &Encode::crf).within(0, 51).doc("constant rate factor: lower is better and larger");
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "nodes/media/ffmpeg.h"
+#include "nodes/media/ffmpeg/decoder.h"
+
+namespace talkgraph {
+namespace {
+
+template <class T>
+void append_mean(const AVFrame& frame, bool planar, double zero, double full, std::vector<double>& out) {
+  const int channels = frame.ch_layout.nb_channels;
+  for (int i = 0; i < frame.nb_samples; ++i) {
+    double sum = 0;
+    for (int c = 0; c < channels; ++c) {
+      const auto* row = reinterpret_cast<const T*>(frame.extended_data[planar ? c : 0]);
+      sum += (static_cast<double>(row[planar ? i : i * channels + c]) - zero) / full;
+    }
+    out.push_back(sum / channels);
+  }
+}
+
+/// Appends the mean of a frame's channels, full scale ±1.
+void append(const AVFrame& frame, const std::string& path, std::vector<double>& out) {
+  const auto format = static_cast<AVSampleFormat>(frame.format);
+  const bool planar = av_sample_fmt_is_planar(format);
+  switch (av_get_packed_sample_fmt(format)) {
+    case AV_SAMPLE_FMT_U8:
+      return append_mean<std::uint8_t>(frame, planar, 128, 128, out);
+    case AV_SAMPLE_FMT_S16:
+      return append_mean<std::int16_t>(frame, planar, 0, 0x1p15, out);
+    case AV_SAMPLE_FMT_S32:
+      return append_mean<std::int32_t>(frame, planar, 0, 0x1p31, out);
+    case AV_SAMPLE_FMT_S64:
+      return append_mean<std::int64_t>(frame, planar, 0, 0x1p63, out);
+    case AV_SAMPLE_FMT_FLT:
+      return append_mean<float>(frame, planar, 0, 1, out);
+    case AV_SAMPLE_FMT_DBL:
+      return append_mean<double>(frame, planar, 0, 1, out);
+    default:
+      throw std::runtime_error(path + ": its samples are of an unknown kind");
+  }
+}
+
+/// When the first picture of the file is shown, seconds, or `otherwise`.
+double picture_start(AVFormatContext& file, double otherwise) {
+  const int best = av_find_best_stream(&file, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  if (best < 0) return otherwise;
+  const AVStream& stream = *file.streams[best];
+  if ((stream.disposition & AV_DISPOSITION_ATTACHED_PIC) || stream.start_time == AV_NOPTS_VALUE) return otherwise;
+  return static_cast<double>(stream.start_time) * av_q2d(stream.time_base);
+}
+
+}  // namespace
+
+Audio ffmpeg_audio(const std::string& path) {
+  Decoder decoder(path, AVMEDIA_TYPE_AUDIO);
+  std::vector<double> samples;
+  int rate = 0;
+  double first = 0;
+  while (const AVFrame* frame = decoder.next()) {
+    if (rate == 0) rate = frame->sample_rate, first = decoder.time();
+    if (frame->sample_rate != rate || rate <= 0)
+      throw std::runtime_error(path + ": the sample rate of its sound changes; convert it to WAV");
+    if (decoder.damaged())
+      throw std::runtime_error(fmt::format("{}: its sound is damaged at {:.2f} s; cut it there or copy it again", path,
+                                           static_cast<double>(samples.size()) / rate));
+    append(*frame, path, samples);
+  }
+  if (samples.empty()) throw std::runtime_error(path + ": its sound track is empty");
+  const double late = std::isfinite(first) ? first - picture_start(decoder.file(), first) : 0;
+  if (std::abs(late) > 60)
+    throw std::runtime_error(fmt::format("{}: sound and picture start {:.0f} s apart", path, std::abs(late)));
+  const auto shift = std::llround(late * rate);
+  if (shift > 0)
+    samples.insert(samples.begin(), static_cast<std::size_t>(shift), 0.0);
+  else
+    samples.erase(samples.begin(), samples.begin() + std::min<std::ptrdiff_t>(-shift, std::ssize(samples)));
+  Audio audio;
+  audio.samples = Eigen::Map<const Eigen::VectorXd>(samples.data(), std::ssize(samples));
+  audio.rate = rate;
+  return audio;
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,19 @@
+#include "nodes/media/register.h"
+
+#include "nodes/media/check_video.h"
+#include "nodes/media/encode.h"
+#include "nodes/media/resample.h"
+#include "nodes/media/video.h"
+#include "nodes/media/write_audio.h"
+
+namespace talkgraph {
+
+void register_media(Registry& registry) {
+  registry.add<OpenVideo>();
+  registry.add<CheckVideo>();
+  registry.add<Resample>();
+  registry.add<Encode>();
+  registry.add<WriteAudio>();
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,26 @@
+#include "nodes/media/video.h"
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+#include "nodes/media/video_file.h"
+
+namespace talkgraph {
+
+Video OpenVideo::operator()() const {
+  if (std::filesystem::is_directory(file.path)) return open_frame_folder(file.path, rate);
+  if (!is_picture_name(file.path)) return open_video(file.path);
+  const cv::Mat still = cv::imread(file.path, cv::IMREAD_COLOR);
+  if (still.empty()) throw std::runtime_error(file.path + ": is missing or cannot be decoded as a picture");
+  return video_from_frames({still}, rate, file.path);
+}
+
+void describe(Description<OpenVideo>& d) {
+  d.type("media.video").summary("opens a video file, a still picture or a folder of pictures");
+  d.output("video");
+  d.param("file", &OpenVideo::file).required().doc("video, PNG or JPEG picture, or folder of pictures");
+  d.param("rate", &OpenVideo::rate).positive().unit("frames/s").doc("of a picture or a folder; a video says its own");
+}
+
+}  // namespace talkgraph

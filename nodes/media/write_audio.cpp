@@ -1,0 +1,22 @@
+#include "nodes/media/write_audio.h"
+
+#include "nodes/media/output_file.h"
+
+namespace talkgraph {
+
+Artifact WriteAudio::operator()(const Audio& audio, Context& context) const {
+  OutputFile file(context, folder, prefix, suffix, ".wav", "sound");
+  write_audio(file.part(), audio, format);
+  return file.finish();
+}
+
+void describe(Description<WriteAudio>& d) {
+  d.type("media.write_audio").summary("writes sound as a WAV file").sink();
+  d.input("audio").output("file");
+  d.param("folder", &WriteAudio::folder).doc("below the run folder");
+  d.param("prefix", &WriteAudio::prefix).doc("in front of the item's name");
+  d.param("suffix", &WriteAudio::suffix).doc("behind the item's name");
+  d.param("format", &WriteAudio::format).doc("of the samples");
+}
+
+}  // namespace talkgraph
