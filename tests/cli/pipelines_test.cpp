@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "cli/look.h"
+#include "cli/registry.h"
+
+namespace talkgraph::cli {
+namespace {
+
+std::vector<std::string> pipelines() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(TALKGRAPH_SOURCE_DIR "/pipelines"))
+    if (entry.path().extension() == ".json" && entry.path().filename() != "talkgraph.schema.json")
+      files.push_back(entry.path().string());
+  return files;
+}
+
+TEST(Pipelines, AreSound) {
+  const Registry registry = all_nodes();
+  EXPECT_GT(pipelines().size(), 8u);
+  for (const auto& file : pipelines()) {
+    Diagnostics diagnostics;
+    EXPECT_TRUE(load_graph(file, registry, diagnostics)) << diagnostics.str();
+  }
+}
+
+TEST(Pipelines, LoadAgainFromWhatARunFolderKeeps) {
+  const Registry registry = all_nodes();
+  for (const auto& file : pipelines()) {
+    if (file.find("fragments") != std::string::npos) continue;
+    Diagnostics diagnostics;
+    const auto graph = load_graph(file, registry, diagnostics);
+    ASSERT_TRUE(graph) << diagnostics.str();
+    const auto again = load_graph_text("resolved.json", graph->resolved.dump(), registry, diagnostics);
+    ASSERT_TRUE(again) << diagnostics.str();
+    EXPECT_EQ(again->resolved, graph->resolved) << file;
+  }
+}
+
+TEST(Pipelines, CanBeDrawn) {
+  const Registry registry = all_nodes();
+  Diagnostics diagnostics;
+  const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", registry, diagnostics);
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_NE(draw_dot(*graph).find("speaker.builtin"), std::string::npos);
+  EXPECT_NE(draw_mermaid(*graph).find("==>|Track|"), std::string::npos);
+}
+
+TEST(Nodes, AllSayWhatTheyAreFor) {
+  const Registry registry = all_nodes();
+  for (const auto& name : registry.names()) {
+    const NodeType& type = *registry.find(name);
+    EXPECT_NE(name.find('.'), std::string::npos) << name;
+    EXPECT_FALSE(type.summary.empty()) << name;
+    EXPECT_NE(show_node(registry, name).find("example"), std::string::npos) << name;
+  }
+  EXPECT_NE(list_nodes(registry, "mel").find("speech.mel"), std::string::npos);
+  EXPECT_THROW(show_node(registry, "speech.mell"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talkgraph::cli

@@ -1,0 +1,53 @@
+#include "cli/speak.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "cli/registry.h"
+
+namespace talkgraph::cli {
+namespace {
+
+std::string complaint(const SpeakCommand& command) {
+  try {
+    speak(command, all_nodes());
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "nothing";
+}
+
+TEST(Speak, SaysWhatIsMissingOrTooMuch) {
+  SpeakCommand c;
+  c.model = "model.h5";
+  c.output = "clip.mp4";
+  EXPECT_EQ(complaint(c), "give either recordings or --text");
+  c.files = {"a.wav"};
+  c.text = "hello";
+  EXPECT_EQ(complaint(c), "give either recordings or --text");
+  c.text.clear();
+  c.transcripts = {"one", "two"};
+  EXPECT_EQ(complaint(c), "1 recordings but 2 transcripts: give --transcript once for each recording, in order");
+  c.transcripts.clear();
+  c.output = "clip.avi";
+  EXPECT_EQ(complaint(c), "clip.avi: the name must end in .mp4 or .webm");
+  c.output.clear();
+  EXPECT_EQ(complaint(c), "say where to write: -o clip.mp4, --visemes FILE, or both");
+}
+
+TEST(Speak, RefusesFilesThatAreNoModels) {
+  SpeakCommand c;
+  c.files = {"a.wav"};
+  c.output = "clip.mp4";
+  c.model = "nowhere.h5";
+  EXPECT_EQ(complaint(c), "nowhere.h5: there is no such model file");
+  c.model = testing::TempDir() + "talkgraph_no_model.h5";
+  std::ofstream(c.model) << "text";
+  EXPECT_EQ(complaint(c), c.model + ": is missing or not an HDF5 file");
+  std::filesystem::remove(c.model);
+}
+
+}  // namespace
+}  // namespace talkgraph::cli
