@@ -31,9 +31,10 @@ Frames Frame::operator()(const Audio& audio) const {
   out.rate = rate;
   out.start = centred ? 0.5 / rate.value() : window / 2;
   out.sample_rate = audio.rate;
-  out.values.setZero(count, length);
+  out.values.resize(count, length);
   for (Eigen::Index t = 0; t < count; ++t) {
     const auto from = std::max<Eigen::Index>(0, begin(t)), to = std::min(samples, begin(t) + length);
+    if (to - from < length) out.values.row(t).setZero();
     if (from < to) out.values.row(t).segment(from - begin(t), to - from) = audio.samples.segment(from, to - from);
   }
   return out;

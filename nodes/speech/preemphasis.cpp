@@ -3,11 +3,11 @@
 namespace talkgraph {
 
 Audio PreEmphasis::operator()(const Audio& audio) const {
-  Audio out = audio;
   const auto n = audio.samples.size();
-  if (n == 0) return out;
-  out.samples.tail(n - 1) -= k * audio.samples.head(n - 1);
-  out.samples[0] *= 1 - k;
+  if (n == 0) return audio;
+  Audio out{Eigen::VectorXd(n), audio.rate};
+  out.samples[0] = (1 - k) * audio.samples[0];
+  out.samples.tail(n - 1) = audio.samples.tail(n - 1) - k * audio.samples.head(n - 1);
   return out;
 }
 

@@ -6,15 +6,13 @@
 namespace talkgraph {
 
 Frames Window::operator()(const Frames& frames) const {
-  Frames out = frames;
   const auto n = frames.values.cols();
-  if (shape == WindowShape::rectangular || n < 2) return out;
+  if (shape == WindowShape::rectangular || n < 2) return frames;
   const double a = shape == WindowShape::hamming ? 0.54 : 0.5;
   Eigen::RowVectorXd weights(n);
   for (Eigen::Index i = 0; i < n; ++i)
     weights[i] = a - (1 - a) * std::cos(2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n - 1));
-  out.values.array().rowwise() *= weights.array();
-  return out;
+  return {frames.values * weights.asDiagonal(), frames.rate, frames.start, frames.sample_rate};
 }
 
 void describe(Description<Window>& d) {

@@ -3,6 +3,7 @@
 #include "nodes/normalise/mean_center.h"
 #include "nodes/normalise/mean_of.h"
 #include "nodes/normalise/restore.h"
+#include "nodes/normalise/zscore.h"
 
 namespace talkgraph {
 namespace {
@@ -30,6 +31,13 @@ TEST(MeanCenter, CountsOnlyUsableFrames) {
   EXPECT_THROW(MeanCenter{}(Track{}, nullptr), std::runtime_error);
 }
 
+TEST(MeanCenter, RefusesNanAndMasksThatDoNotFit) {
+  const Mask usable{{1, 1, 1, 1}};
+  EXPECT_EQ(MeanCenter{}(track(Eigen::VectorXd::Ones(5)), &usable).mean.values(0, 0), 1);
+  EXPECT_THROW(MeanCenter{}(track(Eigen::VectorXd::Ones(7)), &usable), std::runtime_error);
+  EXPECT_THROW(MeanCenter{}(track(Eigen::Vector2d(1, NAN)), nullptr), std::runtime_error);
+}
+
 TEST(Restore, RefusesAMeanThatDoesNotFit) {
   EXPECT_THROW(Restore{}(track(Eigen::MatrixXd::Zero(2, 3)), track(Eigen::MatrixXd::Zero(1, 2))), std::runtime_error);
   EXPECT_THROW(Restore{}(track(Eigen::MatrixXd::Zero(2, 3)), track(Eigen::MatrixXd::Zero(2, 3))), std::runtime_error);
@@ -41,6 +49,31 @@ TEST(MeanOf, WeighsRowsAlike) {
   EXPECT_THROW(MeanOf{}({}), std::runtime_error);
   EXPECT_THROW(MeanOf{}({{"a", track(Eigen::MatrixXd::Zero(1, 1))}, {"b", track(Eigen::MatrixXd::Zero(1, 2))}}),
                std::runtime_error);
+}
+
+TEST(Zscore, BringsTheTrainingRowsToMeanZeroAndDeviationOne) {
+  Eigen::MatrixXd rows = 3 * Eigen::MatrixXd::Random(9, 3);
+  rows.col(1).array() += 1e6;
+  const Collected<Track> all{{"a", track(rows.topRows(4))}, {"b", track(rows.bottomRows(5))}};
+  const Track statistics = ZscoreLearn{}(all);
+  EXPECT_TRUE(statistics.values.row(0).isApprox(rows.colwise().mean(), 1e-14));
+  const Eigen::MatrixXd z = ZscoreApply{}(track(rows), statistics).values;
+  EXPECT_LT(z.colwise().mean().cwiseAbs().maxCoeff(), 1e-9);
+  for (int d = 0; d < 3; ++d) EXPECT_NEAR(z.col(d).squaredNorm() / 9, 1, 1e-9);
+}
+
+TEST(Zscore, GivesZeroWhereTrainingDoesNotVary) {
+  const Track constant = track(Eigen::MatrixXd::Constant(1000, 1, 1e6 + 0.1));
+  const Track statistics = ZscoreLearn{}({{"a", constant}});
+  EXPECT_EQ(statistics.values(1, 0), 0);
+  EXPECT_TRUE(ZscoreApply{}(track(Eigen::MatrixXd::Random(3, 1)), statistics).values.isZero());
+}
+
+TEST(Zscore, RefusesWhatDoesNotFit) {
+  EXPECT_THROW(ZscoreLearn{}({}), std::runtime_error);
+  const Track t = track(Eigen::MatrixXd::Zero(2, 3));
+  EXPECT_THROW(ZscoreApply{}(t, track(Eigen::MatrixXd::Zero(2, 2))), std::runtime_error);
+  EXPECT_THROW(ZscoreApply{}(t, track(Eigen::MatrixXd::Zero(1, 3))), std::runtime_error);
 }
 
 }  // namespace

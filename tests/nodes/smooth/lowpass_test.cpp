@@ -29,6 +29,19 @@ TEST(Lowpass, HasTheGainOfItsDesignAndNoDelay) {
   }
 }
 
+TEST(Lowpass, HalvesTheCutoff) {
+  const Track in = tone(4), out = Lowpass{4}(in);
+  for (int i = 100; i < 300; ++i) EXPECT_NEAR(out.values(i, 0), in.values(i, 0) / 2, 1e-6);
+}
+
+TEST(Lowpass, IsSymmetricInTime) {
+  Track t;
+  t.values = Eigen::MatrixXd::Random(60, 1);
+  Track back = t;
+  back.values = t.values.colwise().reverse();
+  EXPECT_LT((Lowpass{3}(back).values.colwise().reverse() - Lowpass{3}(t).values).cwiseAbs().maxCoeff(), 1e-3);
+}
+
 TEST(Lowpass, KeepsConstantsAndLinesToTheEnds) {
   Track t;
   t.values.resize(50, 2);

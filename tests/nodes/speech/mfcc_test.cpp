@@ -8,11 +8,9 @@
 #include "nodes/speech/cepstrum.h"
 #include "nodes/speech/energy.h"
 #include "nodes/speech/frame.h"
-#include "nodes/speech/join.h"
 #include "nodes/speech/mel.h"
 #include "nodes/speech/preemphasis.h"
 #include "nodes/speech/spectrum.h"
-#include "nodes/speech/stack.h"
 #include "nodes/speech/window.h"
 
 namespace talkgraph {
@@ -92,25 +90,6 @@ TEST(Mfcc, IsFiniteOnSilenceClippingAndOneSample) {
   EXPECT_EQ(mfcc(audio).frames(), 1);
 }
 
-TEST(Frame, CountsWholeFramesAndDoesNotDrift) {
-  EXPECT_EQ(Frame{}(noise(400)).values.rows(), 1);
-  EXPECT_EQ(Frame{}(noise(559)).values.rows(), 1);
-  EXPECT_EQ(Frame{}(noise(560)).values.rows(), 2);
-  // 22.05 kHz has 220.5 samples in 10 ms.
-  Audio ramp;
-  ramp.rate = 22050;
-  ramp.samples = Eigen::VectorXd::LinSpaced(22050 * 60, 0, 22050 * 60 - 1);
-  const Frames frames = Frame{}(ramp);
-  EXPECT_EQ(frames.values(5000, 0), 5000 * 220.5);
-  EXPECT_EQ(frames.values(5001, 0), std::round(5001 * 220.5));
-  EXPECT_DOUBLE_EQ(frames.start, 0.0125);
-}
-
-TEST(Frame, RefusesHopsShorterThanASample) {
-  EXPECT_THROW((Frame{.window = 0.025, .rate = 20000}(noise(1000))), std::invalid_argument);
-  EXPECT_THROW((Frame{.window = 1e-6}(noise(1000))), std::invalid_argument);
-}
-
 TEST(PreEmphasis, FollowsItsEquation) {
   Audio a;
   a.samples = Eigen::Vector3d(1, 2, 4);
@@ -119,15 +98,99 @@ TEST(PreEmphasis, FollowsItsEquation) {
   EXPECT_EQ(PreEmphasis{}(a).samples.size(), 0);
 }
 
+// Filter m of a hand-sized bank: 3 filters over 8 kHz, edges at equal steps of mel.
+TEST(Mel, WeighsByHand) {
+  const Mel mel{.filters = 3};
+  const Eigen::MatrixXd w = mel.weights(9, 500);  // bins at 0, 500 ... 4000 Hz
+  const double step = 1127 * std::log(1 + 4000 / 700.0) / 4;
+  EXPECT_NEAR(step, 536.52, 0.01);
+  const auto hz = [&](double edge) { return 700 * (std::exp(edge * step / 1127) - 1); };
+  EXPECT_NEAR(hz(1), 426.80, 0.01);
+  EXPECT_NEAR(hz(2), 1113.84, 0.01);
+  EXPECT_NEAR(hz(3), 2219.77, 0.01);
+  // 500 Hz lies between the centres of filters 1 and 2, 1500 Hz of 2 and 3.
+  const double at500 = 1127 * std::log(1 + 500 / 700.0) / step, at1500 = 1127 * std::log(1 + 1500 / 700.0) / step;
+  EXPECT_NEAR(w(1, 0), 2 - at500, 1e-12);
+  EXPECT_NEAR(w(1, 1), at500 - 1, 1e-12);
+  EXPECT_NEAR(w(3, 1), 3 - at1500, 1e-12);
+  EXPECT_NEAR(w(3, 2), at1500 - 2, 1e-12);
+  EXPECT_EQ(w(1, 2), 0);
+  EXPECT_EQ(w(3, 0), 0);
+  EXPECT_NEAR(w.row(0).sum() + w.row(8).sum(), 0, 1e-12);  // the edges
+  // Between the outer centres the triangles of a bin add up to one.
+  for (int bin = 1; bin <= 4; ++bin) EXPECT_NEAR(w.row(bin).sum(), 1, 1e-12);
+}
+
+TEST(Mel, ScalesMagnitudeAndPowerAsTheSamples) {
+  Audio a = noise(800), loud = a;
+  loud.samples *= 10;
+  for (const auto kind : {SpectrumKind::magnitude, SpectrumKind::power}) {
+    const ShortTimeSpectrum spectrum{.kind = kind};
+    const double share = std::log(kind == SpectrumKind::power ? 100 : 10);
+    const Eigen::ArrayXXd more = Mel{}(spectrum(Frame{}(loud))).values - Mel{}(spectrum(Frame{}(a))).values;
+    EXPECT_LT((more - share).abs().maxCoeff(), 1e-10);
+  }
+}
+
 TEST(Mel, RefusesFiltersBeyondNyquist) {
   const auto spectrum = ShortTimeSpectrum{}(Frame{}(noise(800)));
   EXPECT_THROW((Mel{.high = 9000}(spectrum)), std::invalid_argument);
   EXPECT_THROW((Mel{.low = 5000, .high = 4000}(spectrum)), std::invalid_argument);
 }
 
+TEST(Spectrum, IsTheDftOfThePaddedFrame) {
+  // More frames than a block, an odd length, every size.
+  Frames frames;
+  frames.values = FrameMatrix::Random(70, 5);
+  for (const int size : {8, 16}) {
+    const Spectrum magnitude = ShortTimeSpectrum{.size = size}(frames);
+    const Spectrum power = ShortTimeSpectrum{.kind = SpectrumKind::power, .size = size}(frames);
+    ASSERT_EQ(magnitude.values.cols(), size / 2 + 1);
+    EXPECT_DOUBLE_EQ(magnitude.bin_hz(), 16000.0 / size);
+    for (int t = 0; t < 70; ++t)
+      for (int k = 0; k <= size / 2; ++k) {
+        std::complex<double> sum = 0;
+        for (int i = 0; i < 5; ++i) sum += frames.values(t, i) * std::polar(1.0, -2 * pi * k * i / size);
+        EXPECT_NEAR(magnitude.values(t, k), std::abs(sum), 1e-13);
+        EXPECT_NEAR(power.values(t, k), std::norm(sum), 1e-13);
+      }
+  }
+  frames.values = FrameMatrix::Ones(1, 1);
+  EXPECT_TRUE(ShortTimeSpectrum{}(frames).values.isOnes());
+}
+
+TEST(Window, IsSymmetric) {
+  Frames frames;
+  frames.values = FrameMatrix::Ones(2, 5);
+  const Eigen::RowVectorXd hamming = Window{}(frames).values.row(1),
+                           hann = Window{WindowShape::hann}(frames).values.row(0);
+  Eigen::RowVectorXd expected(5);
+  expected << 0.08, 0.54, 1, 0.54, 0.08;
+  EXPECT_TRUE(hamming.isApprox(expected, 1e-14));
+  expected << 0, 0.5, 1, 0.5, 0;
+  EXPECT_TRUE(hann.isApprox(expected, 1e-14));
+  EXPECT_EQ(Window{WindowShape::rectangular}(frames).values, frames.values);
+  frames.values = FrameMatrix::Ones(1, 1);
+  EXPECT_EQ(Window{}(frames).values(0, 0), 1);
+}
+
 TEST(Spectrum, RefusesADftShorterThanTheFrame) {
   EXPECT_THROW((ShortTimeSpectrum{.size = 256}(Frame{}(noise(800)))), std::invalid_argument);
   EXPECT_THROW((ShortTimeSpectrum{.size = 500}(Frame{}(noise(800)))), std::invalid_argument);
+}
+
+TEST(Cepstrum, LiftsAndKeepsTheZerothOnDemand) {
+  Track log_filters;
+  log_filters.values = Eigen::MatrixXd::Random(3, 30);
+  const Track plain = Cepstrum{}(log_filters), lifted = Cepstrum{.keep_zeroth = true, .lifter = 22}(log_filters);
+  ASSERT_EQ(lifted.dimension(), 21);
+  EXPECT_TRUE(lifted.values.col(0).isApprox(std::sqrt(2 / 30.0) * log_filters.values.rowwise().sum()));
+  for (int i = 1; i <= 20; ++i) {
+    const double lift = 1 + 11 * std::sin(pi * i / 22);
+    EXPECT_TRUE(lifted.values.col(i).isApprox(lift * plain.values.col(i - 1)));
+  }
+  EXPECT_EQ(lifted.names.front(), "c0");
+  EXPECT_THROW(Cepstrum{.coefficients = 31}(log_filters), std::invalid_argument);
 }
 
 TEST(Energy, IsTheLogOfTheSumOfSquares) {
@@ -136,26 +199,6 @@ TEST(Energy, IsTheLogOfTheSumOfSquares) {
   EXPECT_NEAR(Energy{}(Frame{}(a)).values(0, 0), std::log(400 * 16384.0 * 16384.0), 1e-12);
   a.samples.setZero();
   EXPECT_EQ(Energy{}(Frame{}(a)).values(0, 0), 0);
-}
-
-TEST(Join, PutsColumnsSideBySideOverTheCommonLength) {
-  Track a, b;
-  a.values = Eigen::MatrixXd::Ones(5, 2);
-  b.values = Eigen::MatrixXd::Zero(4, 1);
-  EXPECT_EQ(Join{}(a, b).values.rows(), 4);
-  EXPECT_EQ(Join{}(a, b).values.cols(), 3);
-  b.values.resize(2, 1);
-  EXPECT_THROW(Join{}(a, b), std::runtime_error);
-  b.rate = Rational(50);
-  EXPECT_THROW(Join{}(a, b), std::runtime_error);
-}
-
-TEST(Stack, RepeatsTheEnds) {
-  Track a;
-  a.values = Eigen::Vector3d(1, 2, 3);
-  Eigen::MatrixXd expected(3, 3);
-  expected << 1, 1, 2, 1, 2, 3, 2, 3, 3;
-  EXPECT_EQ((Stack{1, 1}(a).values), expected);
 }
 
 }  // namespace

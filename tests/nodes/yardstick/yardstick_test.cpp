@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 #include "nodes/yardstick/mean.h"
 #include "nodes/yardstick/neighbours.h"
@@ -75,6 +77,39 @@ TEST(Neighbours, AgreesWithASearchFrameByFrame) {
 TEST(Neighbours, TakesAllWhereThereAreFewerThanK) {
   const auto model = NeighboursTrain{0}({{"x", track(Eigen::Vector2d(0, 1))}}, {{"x", track(Eigen::Vector2d(2, 4))}});
   EXPECT_EQ(NeighboursPredict{10}(model, track(Eigen::Matrix<double, 1, 1>(0))).values(0, 0), 3);
+}
+
+TEST(Neighbours, FindsATrainingFrameItself) {
+  const Track a = track(Eigen::MatrixXd::Random(50, 4)), v = track(Eigen::MatrixXd::Random(50, 2));
+  const auto model = NeighboursTrain{}({{"x", a}}, {{"x", v}});
+  EXPECT_TRUE(NeighboursPredict{1}(model, a).values.isApprox(v.values));
+}
+
+TEST(Yardsticks, PairByKeyAndUseTheCommonBeginning) {
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(20, 2), v = Eigen::MatrixXd::Random(18, 1);
+  const auto model = NeighboursTrain{0}({{"no pair", track(a)}, {"x", track(a)}},
+                                        {{"x", track(v)}, {"neither", track(Eigen::MatrixXd::Zero(3, 1))}});
+  EXPECT_EQ(model.audio.rows(), 18);
+  EXPECT_EQ(model.visual, v);
+}
+
+TEST(Yardsticks, RefuseNanAndOtherDimensions) {
+  Eigen::MatrixXd broken = Eigen::MatrixXd::Random(9, 2);
+  const Track good = track(broken), other = track(Eigen::MatrixXd::Random(9, 3));
+  broken(4, 1) = NAN;
+  const Track bad = track(broken);
+  EXPECT_THROW(MeanTrain{}({{"a", bad}}), std::runtime_error);
+  EXPECT_THROW(MeanTrain{}({{"a", good}, {"b", other}}), std::runtime_error);
+  EXPECT_THROW(RidgeTrain{}({{"a", bad}}, {{"a", good}}), std::runtime_error);
+  EXPECT_THROW(RidgeTrain{}({{"a", good}}, {{"a", bad}}), std::runtime_error);
+  EXPECT_THROW(RidgeTrain{}({{"a", good}, {"b", other}}, {{"a", good}, {"b", good}}), std::runtime_error);
+  EXPECT_THROW(RidgeTrain{}({{"a", good}, {"b", good}}, {{"a", good}, {"b", other}}), std::runtime_error);
+  const auto neighbours = NeighboursTrain{}({{"a", good}}, {{"a", good}});
+  EXPECT_THROW(NeighboursPredict{}(neighbours, bad), std::runtime_error);
+  const auto ridge = RidgeTrain{}({{"a", good}}, {{"a", good}});
+  EXPECT_THROW(RidgePredict{}(ridge, bad), std::runtime_error);
+  EXPECT_EQ(RidgePredict{}(ridge, track(Eigen::MatrixXd(0, 2))).frames(), 0);
+  EXPECT_EQ(NeighboursPredict{}(neighbours, track(Eigen::MatrixXd(0, 2))).frames(), 0);
 }
 
 }  // namespace

@@ -1,0 +1,16 @@
+#include "nodes/smooth/register.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace talkgraph {
+namespace {
+
+TEST(Register, DescribesEveryNode) {
+  Registry registry;
+  register_smooth(registry);
+  EXPECT_THAT(registry.names(), testing::ElementsAre("smooth.lowpass"));
+}
+
+}  // namespace
+}  // namespace talkgraph

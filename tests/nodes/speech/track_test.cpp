@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include "nodes/speech/deltas.h"
+#include "nodes/speech/join.h"
+#include "nodes/speech/one_hot.h"
+#include "nodes/speech/stack.h"
+
+namespace talkgraph {
+namespace {
+
+TEST(Join, PutsColumnsSideBySideOverTheCommonLength) {
+  Track a, b;
+  a.values = Eigen::MatrixXd::Ones(5, 2);
+  b.values = Eigen::MatrixXd::Zero(4, 1);
+  Eigen::MatrixXd expected(4, 3);
+  expected << Eigen::MatrixXd::Ones(4, 2), Eigen::MatrixXd::Zero(4, 1);
+  EXPECT_EQ(Join{}(a, b).values, expected);
+  b.values.resize(2, 1);
+  EXPECT_THROW(Join{}(a, b), std::runtime_error);
+  b.values.resize(5, 1);
+  b.rate = Rational(50);
+  EXPECT_THROW(Join{}(a, b), std::runtime_error);
+}
+
+TEST(Stack, RepeatsTheEnds) {
+  Track a;
+  a.values = Eigen::Vector3d(1, 2, 3);
+  Eigen::MatrixXd expected(3, 3);
+  expected << 1, 1, 2, 1, 2, 3, 2, 3, 3;
+  EXPECT_EQ((Stack{1, 1}(a).values), expected);
+  EXPECT_EQ((Stack{1, 1}(Track{}).frames()), 0);
+}
+
+TEST(Deltas, AreTheSlopeOfALine) {
+  Track line;
+  line.values.resize(10, 2);
+  line.values.col(0) = Eigen::VectorXd::LinSpaced(10, 0, 27);
+  line.values.col(1).setConstant(5);
+  line.names = {"a", "b"};
+  const Track d = Deltas{3}(line);
+  for (int t = 3; t < 7; ++t) EXPECT_NEAR(d.values(t, 0), 3, 1e-12);
+  EXPECT_TRUE(d.values.col(1).isZero());
+  EXPECT_EQ(d.names[0], "delta a");
+}
+
+TEST(Deltas, FollowTheirFormulaAtTheEnds) {
+  Track t;
+  t.values.resize(4, 1);
+  t.values << 1, 4, 9, 16;
+  // Ends repeated: 1 1 | 1 4 9 16 | 16 16.
+  const Eigen::Vector4d expected((1 * (4 - 1) + 2 * (9 - 1)) / 10.0, (1 * (9 - 1) + 2 * (16 - 1)) / 10.0,
+                                 (1 * (16 - 4) + 2 * (16 - 1)) / 10.0, (1 * (16 - 9) + 2 * (16 - 4)) / 10.0);
+  EXPECT_TRUE(Deltas{}(t).values.isApprox(expected, 1e-14));
+  t.values.resize(1, 1);
+  t.values << 7;
+  EXPECT_EQ(Deltas{}(t).values(0, 0), 0);
+  EXPECT_EQ(Deltas{}(Track{}).frames(), 0);
+}
+
+TEST(OneHot, MarksTheLabelOfEachFrame) {
+  const Track t = OneHot{{"sil", "aa", "b"}}(FrameLabels{{"aa", "sil", "aa"}, Rational(50)});
+  Eigen::MatrixXd expected(3, 3);
+  expected << 0, 1, 0, 1, 0, 0, 0, 1, 0;
+  EXPECT_EQ(t.values, expected);
+  EXPECT_DOUBLE_EQ(t.start, 0.01);
+  EXPECT_EQ(t.names[2], "b");
+}
+
+TEST(OneHot, KnowsTheCmuPhonesAndRefusesOthers) {
+  EXPECT_EQ(cmu_phones().size(), 41u);
+  EXPECT_EQ(OneHot{}(FrameLabels{{"zh", "sil", "breath"}}).values.sum(), 3);
+  EXPECT_EQ(OneHot{}(FrameLabels{}).frames(), 0);
+  try {
+    OneHot{}(FrameLabels{{"aa", "AA1"}});
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("frame 1: label \"AA1\""), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace talkgraph

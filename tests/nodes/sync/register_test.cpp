@@ -1,0 +1,16 @@
+#include "nodes/sync/register.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace talkgraph {
+namespace {
+
+TEST(Register, DescribesEveryNode) {
+  Registry registry;
+  register_sync(registry);
+  EXPECT_THAT(registry.names(), testing::ElementsAre("sync.median", "sync.polyphase"));
+}
+
+}  // namespace
+}  // namespace talkgraph
