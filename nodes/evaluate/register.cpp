@@ -3,6 +3,7 @@
 #include "nodes/evaluate/compare.h"
 #include "nodes/evaluate/mouth_lag.h"
 #include "nodes/evaluate/score.h"
+#include "nodes/evaluate/sequences.h"
 #include "nodes/evaluate/summary.h"
 
 namespace talkgraph {
@@ -11,6 +12,7 @@ void register_evaluate(Registry& registry) {
   registry.add<Compare>();
   registry.add<MouthLag>();
   registry.add<Score>();
+  registry.add<SequenceTable>();
   registry.add<Summary>();
 }
 

@@ -234,12 +234,13 @@ TEST(ContextWindows, RefusesTracksOfOtherLengths) {
 
 TEST(Vlmm, IsSavedWhole) {
   const std::string path = testing::TempDir() + "talkgraph_vlmm.h5";
-  Vlmm v = ContextTrain{.order = 3, .prune = 0, .keep = 0}({{"x", stream("aabbabacab")}}), back;
+  Vlmm v = ContextTrain{.order = 3, .prune = 0, .keep = 0, .repeating = false}({{"x", stream("aabbabacab")}}), back;
   (*hdf5_writer(path))("v", v);
   (*hdf5_reader(path))("v", back);
   const auto hash = [](Vlmm& x) { return content_hash([&](Archive& ar) { fields(ar, x); }); };
   EXPECT_EQ(hash(back), hash(v));
   EXPECT_EQ(back.states.size(), v.states.size());
+  EXPECT_FALSE(back.repeating);
   EXPECT_EQ(back.states.back().memory, v.states.back().memory);
   std::remove(path.c_str());
 }

@@ -6,6 +6,7 @@
 #include "nodes/evaluate/compare.h"
 #include "nodes/evaluate/mouth_lag.h"
 #include "nodes/evaluate/score.h"
+#include "nodes/evaluate/sequences.h"
 #include "nodes/evaluate/summary.h"
 
 namespace talkgraph {
@@ -87,6 +88,14 @@ TEST(Summary, GivesMeanAndSampleDeviation) {
   EXPECT_DOUBLE_EQ(t.cells[0][1], std::sqrt(2.0));
   EXPECT_EQ(t.cells[0][2], 3);
   EXPECT_TRUE(std::isnan(Summary{}({}).cells[0][0]));
+}
+
+TEST(SequenceTable, HasARowASequence) {
+  const Table t = SequenceTable{.scores = {"b", "a"}}({{"x", {{{"a", 1}, {"b", 2}}}}, {"y", {{{"a", 3}}}}});
+  EXPECT_EQ(t.rows, (std::vector<std::string>{"x", "y"}));
+  EXPECT_EQ(t.cells[0], (std::vector<double>{2, 1}));
+  EXPECT_TRUE(std::isnan(t.cells[1][0]));
+  EXPECT_TRUE(SequenceTable{}({}).rows.empty());
 }
 
 TEST(Compare, StacksRowsUnderTheirNames) {

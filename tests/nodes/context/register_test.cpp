@@ -1,0 +1,17 @@
+#include "nodes/context/register.h"
+
+#include <gtest/gtest.h>
+
+namespace talkgraph {
+namespace {
+
+TEST(RegisterContext, DescribesEveryNode) {
+  Registry registry;
+  register_context(registry);
+  for (const char* name :
+       {"context.train", "context.decode", "context.segment", "context.windows", "context.perplexity"})
+    EXPECT_TRUE(registry.find(name)) << name;
+}
+
+}  // namespace
+}  // namespace talkgraph

@@ -1,0 +1,17 @@
+#include "nodes/evaluate/register.h"
+
+#include <gtest/gtest.h>
+
+namespace talkgraph {
+namespace {
+
+TEST(RegisterEvaluate, DescribesEveryNode) {
+  Registry registry;
+  register_evaluate(registry);
+  for (const char* name :
+       {"evaluate.score", "evaluate.summary", "evaluate.sequences", "evaluate.compare", "evaluate.mouth_lag"})
+    EXPECT_TRUE(registry.find(name)) << name;
+}
+
+}  // namespace
+}  // namespace talkgraph

@@ -1,0 +1,16 @@
+#include "nodes/plot/register.h"
+
+#include <gtest/gtest.h>
+
+namespace talkgraph {
+namespace {
+
+TEST(RegisterPlot, DescribesEveryNode) {
+  Registry registry;
+  register_plot(registry);
+  for (const char* name : {"plot.bars", "plot.mean_trajectory", "plot.tracks", "plot.trajectories"})
+    EXPECT_TRUE(registry.find(name)) << name;
+}
+
+}  // namespace
+}  // namespace talkgraph

@@ -1,0 +1,16 @@
+#include "nodes/report/register.h"
+
+#include <gtest/gtest.h>
+
+namespace talkgraph {
+namespace {
+
+TEST(RegisterReport, DescribesEveryNode) {
+  Registry registry;
+  register_report(registry);
+  for (const char* name : {"report.write", "report.write_plot", "report.write_table"})
+    EXPECT_TRUE(registry.find(name)) << name;
+}
+
+}  // namespace
+}  // namespace talkgraph
