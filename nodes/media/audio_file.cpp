@@ -37,7 +37,7 @@ std::uint64_t missing_bytes(const std::string& path) {
     const std::uint64_t length = chunk[4] | chunk[5] << 8 | chunk[6] << 16 | std::uint64_t{chunk[7]} << 24;
     at += 8;
     if (!std::memcmp(chunk, "data", 4)) {
-      const bool open_ended = length == 0 || length >= 0xfffffff0u;
+      const bool open_ended = length >= 0xfffffff0u;
       return open_ended || at + length <= size ? 0 : at + length - size;
     }
     at += length + length % 2;

@@ -11,7 +11,7 @@ namespace talkgraph {
 /// sound track of whatever FFmpeg can read, aligned to the first picture of a
 /// video. Several channels become their mean.
 ///
-/// A WAV whose header leaves the length open (0 or 2³²−1, as programs write that
+/// A WAV whose header leaves the length open (2³²−1, as programs write that
 /// stream) is read to the end of the file. Throws std::runtime_error naming the file
 /// where it is missing, empty, not sound, without one sample, shorter than its header
 /// promises, or holds a sample that is NaN or infinite.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -54,34 +55,64 @@ double picture_start(AVFormatContext& file, double otherwise) {
   return static_cast<double>(stream.start_time) * av_q2d(stream.time_base);
 }
 
+/// What is decoded of a sound track; times in seconds, NaN if the file does not say.
+struct SoundTrack {
+  std::vector<double> samples;
+  int rate = 0;
+  double start = 0, end = 0;
+};
+
+SoundTrack decode(Decoder& decoder, const std::string& path) {
+  SoundTrack track;
+  while (const AVFrame* frame = decoder.next()) {
+    if (track.rate == 0) {
+      track.rate = frame->sample_rate;
+      track.start = decoder.time();
+    }
+    if (frame->sample_rate != track.rate || track.rate <= 0)
+      throw std::runtime_error(path + ": the sample rate of its sound changes; convert it to WAV");
+    if (decoder.damaged())
+      throw std::runtime_error(fmt::format("{}: its sound is damaged at {:.2f} s; cut it there or copy it again", path,
+                                           static_cast<double>(track.samples.size()) / track.rate));
+    append(*frame, path, track.samples);
+    track.end = decoder.time() + static_cast<double>(frame->pkt_duration) * av_q2d(decoder.stream().time_base);
+  }
+  if (track.samples.empty()) throw std::runtime_error(path + ": its sound track is empty");
+  return track;
+}
+
+/// Takes off what the encoder added to fill its last block.
+void cut_end(SoundTrack& track) {
+  const double seconds = track.end - track.start;
+  if (!(seconds > 0)) return;
+  const auto wanted = static_cast<std::size_t>(std::llround(seconds * track.rate));
+  if (wanted < track.samples.size()) track.samples.resize(wanted);
+}
+
+/// Makes the sound start with the first picture. Less than 5 ms may be due to times
+/// that the file holds rounded.
+void align(SoundTrack& track, double picture, const std::string& path) {
+  const double late = track.start - picture;
+  if (!(std::abs(late) >= 0.005)) return;
+  if (std::abs(late) > 60)
+    throw std::runtime_error(fmt::format("{}: sound and picture start {:.0f} s apart", path, std::abs(late)));
+  const auto shift = static_cast<std::ptrdiff_t>(std::llround(late * track.rate));
+  if (shift > 0)
+    track.samples.insert(track.samples.begin(), static_cast<std::size_t>(shift), 0.0);
+  else
+    track.samples.erase(track.samples.begin(), track.samples.begin() + std::min(-shift, std::ssize(track.samples)));
+}
+
 }  // namespace
 
 Audio ffmpeg_audio(const std::string& path) {
   Decoder decoder(path, AVMEDIA_TYPE_AUDIO);
-  std::vector<double> samples;
-  int rate = 0;
-  double first = 0;
-  while (const AVFrame* frame = decoder.next()) {
-    if (rate == 0) rate = frame->sample_rate, first = decoder.time();
-    if (frame->sample_rate != rate || rate <= 0)
-      throw std::runtime_error(path + ": the sample rate of its sound changes; convert it to WAV");
-    if (decoder.damaged())
-      throw std::runtime_error(fmt::format("{}: its sound is damaged at {:.2f} s; cut it there or copy it again", path,
-                                           static_cast<double>(samples.size()) / rate));
-    append(*frame, path, samples);
-  }
-  if (samples.empty()) throw std::runtime_error(path + ": its sound track is empty");
-  const double late = std::isfinite(first) ? first - picture_start(decoder.file(), first) : 0;
-  if (std::abs(late) > 60)
-    throw std::runtime_error(fmt::format("{}: sound and picture start {:.0f} s apart", path, std::abs(late)));
-  const auto shift = std::llround(late * rate);
-  if (shift > 0)
-    samples.insert(samples.begin(), static_cast<std::size_t>(shift), 0.0);
-  else
-    samples.erase(samples.begin(), samples.begin() + std::min<std::ptrdiff_t>(-shift, std::ssize(samples)));
+  SoundTrack track = decode(decoder, path);
+  cut_end(track);
+  align(track, picture_start(decoder.file(), track.start), path);
   Audio audio;
-  audio.samples = Eigen::Map<const Eigen::VectorXd>(samples.data(), std::ssize(samples));
-  audio.rate = rate;
+  audio.samples = Eigen::Map<const Eigen::VectorXd>(track.samples.data(), std::ssize(track.samples));
+  audio.rate = track.rate;
   return audio;
 }
 

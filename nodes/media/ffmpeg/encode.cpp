@@ -223,7 +223,7 @@ void ffmpeg_encode(const std::string& path, const Video& video, const Audio* aud
   std::optional<SoundWriter> sound;
   if (audio) sound.emplace(*file, *audio, settings.format, check);
 
-  AVDictionary* muxing = options({{"movflags", "+faststart"}});
+  AVDictionary* muxing = options({{"movflags", "+faststart"}, {"movie_timescale", "90000"}});
   const int started = avformat_write_header(file.get(), &muxing);
   av_dict_free(&muxing);
   check(started, "cannot be written");

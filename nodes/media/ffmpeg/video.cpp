@@ -65,7 +65,7 @@ Scan scan(const std::string& path, Rational rate) {
     times.push_back(decoder.time());
     damaged.push_back(decoder.damaged());
   }
-  if (times.empty()) throw std::runtime_error(path + ": not one picture of it can be decoded");
+  if (times.empty()) throw std::runtime_error(path + ": breaks off or is damaged: not one picture can be decoded");
   Scan result{constant_rate(times, rate.value(), path), {}};
   const auto frames = static_cast<std::int64_t>(result.shown.size());
   check_length(decoder.stream(), static_cast<double>(frames) / rate.value(), path);

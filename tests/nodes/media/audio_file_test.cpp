@@ -88,11 +88,9 @@ TEST_F(AudioFileTest, AnOpenEndedHeaderIsReadToTheEndOfTheFile) {
   write_audio(path("whole.wav"), tone(0.5, 16000));
   std::string open = bytes(path("whole.wav"));
   const auto data = open.find("data");
-  for (const char length : {'\xff', '\0'}) {
-    open.replace(4, 4, 4, length);
-    open.replace(data + 4, 4, 4, length);
-    EXPECT_EQ(read_audio(write("open.wav", open)).samples.size(), 8000) << int{length};
-  }
+  open.replace(4, 4, 4, '\xff');
+  open.replace(data + 4, 4, 4, '\xff');
+  EXPECT_EQ(read_audio(write("open.wav", open)).samples.size(), 8000);
 }
 
 TEST_F(AudioFileTest, WritingClipsAndRefusesWhatDoesNotFit) {

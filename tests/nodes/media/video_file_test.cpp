@@ -30,7 +30,7 @@ TEST_F(VideoFileTest, ErrorsNameTheFile) {
   EXPECT_THAT(error_of([&] { open_video(path("no.mp4")); }), HasSubstr("no.mp4: there is no such file"));
   EXPECT_THAT(error_of([&] { open_video(folder_.string()); }), HasSubstr("is not a file"));
   EXPECT_THAT(error_of([&] { open_video(write("text.mp4", std::string(5000, 'x'))); }), HasSubstr("text.mp4: "));
-  EXPECT_THAT(error_of([&] { open_video(write("text.txt", "hello\n")); }), HasSubstr("neither a video nor sound"));
+  EXPECT_THAT(error_of([&] { open_video(write("text.txt", "hello\n")); }), HasSubstr("text.txt: "));
   EXPECT_THAT(error_of([&] { open_video(write("empty.mp4", "")); }), HasSubstr("empty.mp4: "));
   write_audio(path("sound.wav"), tone(1, 16000));
   EXPECT_THAT(error_of([&] { open_video(path("sound.wav")); }), HasSubstr("holds no video"));

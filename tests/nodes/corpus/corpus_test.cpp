@@ -1,0 +1,292 @@
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+
+#include "nodes/corpus/files.h"
+#include "nodes/corpus/grid.h"
+#include "nodes/corpus/manifest.h"
+#include "nodes/corpus/parts.h"
+#include "nodes/corpus/register.h"
+#include "nodes/corpus/select.h"
+#include "nodes/media/audio_file.h"
+#include "nodes/media/ffmpeg.h"
+#include "nodes/media/register.h"
+#include "tests/nodes/media/media_test.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<Recording> all(Stream<Recording> stream) {
+  std::vector<Recording> recordings;
+  while (auto item = stream.next()) {
+    EXPECT_EQ(item->key, item->value.id);
+    recordings.push_back(item->value);
+  }
+  return recordings;
+}
+
+std::vector<std::string> ids(const std::vector<Recording>& recordings) {
+  std::vector<std::string> names;
+  for (const auto& r : recordings) names.push_back(r.id + ":" + r.split);
+  return names;
+}
+
+class GridTest : public MediaTest {
+ protected:
+  GridTest() {
+    for (const char* sub : {"video", "align", "landmarks"}) std::filesystem::create_directories(folder_ / sub);
+    write("split.json", R"({"train": ["a", "b"], "test": ["c"]})");
+    for (const std::string id : {"a", "b", "c"}) {
+      write("video/" + id + ".mpg", "not opened");
+      write("align/" + id + ".align", "0 10000 sil\n10000 20000 bin\n20000 25000 blue\n");
+      std::string row = "0";
+      for (int i = 0; i < 136; ++i) row += "," + std::to_string(i);
+      std::string head = "frame";
+      for (int i = 0; i < 68; ++i) head += ",x" + std::to_string(i) + ",y" + std::to_string(i);
+      write("landmarks/" + id + ".csv", head + "\n" + row + "\n");
+    }
+    node_.folder = {folder_.string()};
+  }
+  Grid node_;
+};
+
+TEST_F(GridTest, ReadsTheClipsOfEverySplit) {
+  const auto clips = all(node_());
+  EXPECT_THAT(ids(clips), ElementsAre("a:train", "b:train", "c:test"));
+  EXPECT_EQ(clips[1].transcript->text, "bin blue");
+  EXPECT_EQ(clips[1].words->words.size(), 3u);
+  EXPECT_EQ(clips[1].landmarks->scheme, "ibug68");
+  EXPECT_EQ(clips[1].landmarks->frames.at(0)(67, 1), 135);
+  EXPECT_FALSE(clips[1].phones);
+  EXPECT_TRUE(clips[1].audio && clips[1].video);
+  EXPECT_EQ(node_().size(), 3u);
+}
+
+TEST_F(GridTest, LimitCountsInEverySplit) {
+  node_.limit = 1;
+  EXPECT_THAT(ids(all(node_())), ElementsAre("a:train", "c:test"));
+}
+
+TEST_F(GridTest, WithoutLandmarks) {
+  std::filesystem::remove_all(folder_ / "landmarks");
+  EXPECT_FALSE(all(node_())[0].landmarks);
+}
+
+TEST_F(GridTest, Errors) {
+  write("align/b.align", "0 1\n");
+  EXPECT_THAT(error_of([&] { all(node_()); }), HasSubstr("b.align:1: "));
+  std::filesystem::remove(path("video/a.mpg"));
+  std::filesystem::remove(path("landmarks/c.csv"));
+  EXPECT_THAT(error_of([&] { node_(); }), AllOf(HasSubstr("2 files"), HasSubstr("video/a.mpg"), HasSubstr("c.csv")));
+  write("split.json", "{\"train\": [\"a\", 3],\n \"test\": [\"a\"]}");
+  EXPECT_THAT(error_of([&] { node_(); }), AllOf(HasSubstr("split.json:1:17: error: the name"),
+                                                HasSubstr("split.json:2:11: error: the clip \"a\"")));
+  write("split.json", "{");
+  EXPECT_THAT(error_of([&] { node_(); }), HasSubstr("split.json:1:"));
+  std::filesystem::remove(path("split.json"));
+  EXPECT_THAT(error_of([&] { node_(); }), HasSubstr("split.json: is missing"));
+  node_.folder = {path("none")};
+  EXPECT_THAT(error_of([&] { node_(); }), HasSubstr("there is no such folder"));
+}
+
+TEST(Grid, RealRecordings) {
+  const std::string folder = TALKGRAPH_SOURCE_DIR "/../shared/data/grid-s1";
+  if (!built_with_ffmpeg || !std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
+  Grid node;
+  node.folder = {folder};
+  const auto clips = all(node());
+  std::map<std::string, int> count;
+  for (const auto& clip : clips) ++count[clip.split];
+  EXPECT_EQ(count, (std::map<std::string, int>{{"train", 198}, {"validation", 30}, {"test", 30}, {"damaged", 2}}));
+  Context context;
+  const auto parts = Parts{}(clips.at(0), context);
+  EXPECT_EQ(parts.audio.rate, 44100);
+  EXPECT_NEAR(parts.audio.seconds(), 2.98, 0.03);
+  EXPECT_EQ(parts.video->source->frames(), 75);
+  EXPECT_EQ(parts.video->source->rate(), Rational(25));
+  EXPECT_EQ(parts.video->source->size(), cv::Size(360, 288));
+  EXPECT_EQ(parts.landmarks->frames.size(), 75u);
+  EXPECT_TRUE(parts.video->damaged.empty());
+  EXPECT_EQ(Parts{}(clips.back(), context).video->damaged.size(), 12u);
+}
+
+class ManifestTest : public MediaTest {
+ protected:
+  Manifest node(const std::string& text) {
+    Manifest manifest;
+    manifest.file = {write("m.json", text)};
+    return manifest;
+  }
+};
+
+TEST_F(ManifestTest, EverythingThatAClipMayHave) {
+  write_audio(path("a.wav"), tone(0.2, 16000));
+  std::filesystem::create_directories(folder_ / "frames");
+  for (const int n : {0, 1, 2}) cv::imwrite(path("frames/" + std::to_string(n) + ".png"), test_picture(n));
+  write("a.csv", "jaw,lips\n1,2\n3,4\n5,6\n");
+  write("a.lab", "0 1000000 AA1\n");
+  write("a.align", "0 2500 sil\n2500 5000 Ah\n");
+  write("a.txt", "Ah, yes.");
+  write("p.csv", "x0,y0\n1,2\n3,4\n5,6\n");
+  const auto clips = all(node(R"({"rate": "30000/1001", "clips": [
+    {"id": "one", "video": "frames", "audio": "a.wav", "phones": "a.lab", "words": "a.align", "transcript": "a.txt",
+     "landmarks": {"file": "p.csv", "scheme": "mouth"}, "split": "test", "rate": 15},
+    {"id": "two", "audio": "a.wav", "visual": {"file": "a.csv", "rate": 20}, "words": "a.align"},
+    {"id": "three", "audio": "a.wav", "transcript": "hello there", "visual": {"file": "a.csv"}}]})")());
+  EXPECT_THAT(ids(clips), ElementsAre("one:test", "two:train", "three:train"));
+  const Recording& one = clips[0];
+  EXPECT_EQ(one.audio().samples.size(), 3200);
+  EXPECT_EQ(one.video().source->frames(), 3);
+  EXPECT_EQ(one.video().source->rate(), Rational(15));
+  EXPECT_EQ(one.phones->phones.at(0).label, "aa");
+  EXPECT_EQ(one.transcript->text, "Ah, yes.");
+  EXPECT_EQ(one.landmarks->scheme, "mouth");
+  EXPECT_EQ(one.landmarks->rate, Rational(15));
+  EXPECT_FALSE(one.visual);
+  EXPECT_FALSE(clips[1].video);
+  EXPECT_EQ(clips[1].transcript->text, "ah");
+  EXPECT_EQ(clips[1].visual->values, (Eigen::MatrixXd(3, 2) << 1, 2, 3, 4, 5, 6).finished());
+  EXPECT_EQ(clips[1].visual->rate, Rational(20));
+  EXPECT_EQ(clips[1].visual->start, 0.025);
+  EXPECT_THAT(clips[1].visual->names, ElementsAre("jaw", "lips"));
+  EXPECT_EQ(clips[2].visual->rate, Rational(30000, 1001));
+  EXPECT_EQ(clips[2].transcript->text, "hello there");
+}
+
+TEST_F(ManifestTest, AllThatIsWrongIsToldInOneGo) {
+  write_audio(path("a.wav"), tone(0.1, 8000));
+  const std::string error = error_of([&] {
+    node(R"({"clips": [
+ {"id": "x", "audio": "none.wav"},
+ {"id": "x", "audio": "a.wav"},
+ {"audio": "a.wav", "transcrip": "hello"},
+ {"id": "y"},
+ {"id": "z", "audio": 3, "visual": {"dataset": "d"}},
+ {"id": "w", "audio": "a.wav", "phones": "a.wav", "rate": -1},
+ 7
+]})")();
+  });
+  EXPECT_THAT(error, HasSubstr("m.json:2:23: error: there is no file"));
+  EXPECT_THAT(error, HasSubstr("m.json:3:9: error: the clip in line 2 has the id \"x\" already"));
+  EXPECT_THAT(error, HasSubstr("m.json:4:2: error: a clip needs an \"id\""));
+  EXPECT_THAT(error, HasSubstr("unknown member \"transcrip\" (did you mean \"transcript\"?)"));
+  EXPECT_THAT(error, HasSubstr("m.json:5:2: error: a clip needs sound"));
+  EXPECT_THAT(error, HasSubstr("\"audio\": a text is expected, got a number"));
+  EXPECT_THAT(error, HasSubstr("\"visual\" needs a \"file\""));
+  EXPECT_THAT(error, HasSubstr("\"visual\" needs a \"rate\""));
+  EXPECT_THAT(error, HasSubstr("\"phones\" must end in one of .lab, .textgrid, .align"));
+  EXPECT_THAT(error, HasSubstr("\"rate\": must be positive"));
+  EXPECT_THAT(error, HasSubstr("m.json:8:2: error: a clip is an object"));
+}
+
+TEST_F(ManifestTest, BadFiles) {
+  EXPECT_THAT(error_of([&] { node("{\"clips\": [}")(); }), HasSubstr("m.json:1:"));
+  EXPECT_THAT(error_of([&] { node("[]")(); }), HasSubstr("a manifest is an object"));
+  EXPECT_THAT(error_of([&] { node("{}")(); }), HasSubstr("needs a list \"clips\""));
+  EXPECT_THAT(error_of([&] { node("{\"clips\": 3}")(); }), HasSubstr("a list of clips is expected, got a number"));
+  Manifest none;
+  none.file = {path("none.json")};
+  EXPECT_THAT(error_of([&] { none(); }), HasSubstr("none.json: is missing"));
+  EXPECT_TRUE(all(node("{\"clips\": []}")()).empty());
+}
+
+using CorpusTest = MediaTest;
+
+TEST_F(CorpusTest, SoundFilesGetUniqueIds) {
+  std::filesystem::create_directories(folder_ / "b");
+  for (const char* name : {"x.wav", "b/x.wav", "y.wav"}) write_audio(path(name), tone(0.1, 8000));
+  SoundFiles node;
+  node.files = {{path("x.wav")}, {path("b/x.wav")}, {path("y.wav")}};
+  node.transcripts = {"one", "", "three"};
+  const auto files = all(node());
+  EXPECT_THAT(ids(files), ElementsAre("x:", "x-2:", "y:"));
+  EXPECT_EQ(files[0].transcript->text, "one");
+  EXPECT_FALSE(files[1].transcript);
+  EXPECT_FALSE(files[0].video);
+  EXPECT_EQ(files[2].audio().samples.size(), 800);
+  node.transcripts.pop_back();
+  EXPECT_THROW(node(), std::invalid_argument);
+  node.transcripts.clear();
+  node.files.push_back({path("none.wav")});
+  EXPECT_THAT(error_of([&] { node(); }), HasSubstr("none.wav: there is no such file"));
+}
+
+TEST(Select, TakesTheSplitsNamed) {
+  Recording recording;
+  recording.split = "train";
+  EXPECT_TRUE(Select{}(recording));
+  EXPECT_TRUE((Select{{"test", "train"}}(recording)));
+  EXPECT_FALSE((Select{{"test"}}(recording)));
+}
+
+class PartsTest : public testing::Test {
+ protected:
+  PartsTest() {
+    recording_.id = "u";
+    recording_.audio = [] { return tone(1, 16000); };
+    recording_.video = [] { return test_video(25, 25); };
+    context_.on_log = [this](std::string_view text) { log_ += text; };
+  }
+  Recording recording_;
+  Context context_;
+  std::string log_;
+};
+
+TEST_F(PartsTest, WhatIsAbsentStaysAbsent) {
+  recording_.video = nullptr;
+  const auto parts = Parts{}(recording_, context_);
+  EXPECT_EQ(parts.audio.samples.size(), 16000);
+  EXPECT_FALSE(parts.video || parts.transcript || parts.words || parts.phones || parts.landmarks || parts.visual);
+}
+
+TEST_F(PartsTest, DamagedFramesAreMarked) {
+  recording_.video = [] {
+    auto frames = test_video(25, 25).read_all();
+    frames[2].setTo(cv::Scalar::all(128));
+    return video_from_frames(frames, 25);
+  };
+  EXPECT_THAT(Parts{}(recording_, context_).video->damaged, ElementsAre(2));
+  Parts unchecked;
+  unchecked.check = false;
+  EXPECT_TRUE(unchecked(recording_, context_).video->damaged.empty());
+}
+
+TEST_F(PartsTest, LengthsAreCompared) {
+  Parts{}(recording_, context_);
+  EXPECT_EQ(log_, "");
+  recording_.audio = [] { return tone(1.3, 16000); };
+  Parts{}(recording_, context_);
+  EXPECT_THAT(log_, HasSubstr("u: the sound lasts 1.30 s, the picture 1.00 s"));
+  log_.clear();
+  recording_.video = nullptr;
+  recording_.visual = Track{Eigen::MatrixXd::Zero(10, 2), 25, 0.02, {}};
+  Parts{}(recording_, context_);
+  EXPECT_THAT(log_, HasSubstr("the visual track 0.40 s"));
+}
+
+TEST_F(PartsTest, LandmarksMustBeOfTheVideo) {
+  recording_.landmarks = LandmarkTrack{std::vector<Shape>(23, Shape::Zero(3, 2)), 25, ""};
+  EXPECT_NO_THROW(Parts{}(recording_, context_));
+  recording_.landmarks->frames.pop_back();
+  EXPECT_THAT(error_of([&] { Parts{}(recording_, context_); }),
+              HasSubstr("has 25 frames, but its landmarks are of 22"));
+  recording_.landmarks = LandmarkTrack{std::vector<Shape>(25, Shape::Zero(3, 2)), 30, ""};
+  EXPECT_THAT(error_of([&] { Parts{}(recording_, context_); }),
+              HasSubstr("25 frames per second, but its landmarks 30"));
+}
+
+TEST(Registration, EveryNodeIsThere) {
+  Registry registry;
+  register_media(registry);
+  register_corpus(registry);
+  for (const char* name : {"media.video", "media.check_video", "media.resample", "media.encode", "media.write_audio",
+                           "corpus.grid", "corpus.manifest", "corpus.files", "corpus.select", "corpus.parts"})
+    EXPECT_TRUE(registry.find(name)) << name;
+}
+
+}  // namespace
+}  // namespace talkgraph

@@ -1,0 +1,100 @@
+#include "nodes/corpus/tables.h"
+
+#include "graph/archive.h"
+#include "tests/nodes/media/media_test.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using TablesTest = MediaTest;
+
+template <class T>
+std::string npy(const std::string& type, const std::string& shape, const std::vector<T>& values,
+                const std::string& order = "False") {
+  std::string header = "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }";
+  header.resize(117, ' ');
+  header += '\n';
+  std::string bytes = std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(header.size()) + '\0' + header;
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+  return bytes;
+}
+
+const Eigen::MatrixXd kValues = (Eigen::MatrixXd(2, 3) << 1, 2, 3, 4, 5, 6.5).finished();
+
+TEST_F(TablesTest, CsvWithAndWithoutNames) {
+  const auto named = read_table(write("a.csv", "x,y,z\n1,2,3\r\n\n4, 5,6.5\n"), "");
+  EXPECT_THAT(named.names, ElementsAre("x", "y", "z"));
+  EXPECT_EQ(named.values, kValues);
+  EXPECT_EQ(read_table(write("b.csv", "1,2,3\n4,5,65e-1\n"), "").values, kValues);
+}
+
+TEST_F(TablesTest, CsvErrorsNameTheLine) {
+  EXPECT_THAT(error_of([&] { read_csv(write("a.csv", "x,y\n1,2\n1\n")); }), HasSubstr("a.csv:3: 2 columns"));
+  EXPECT_THAT(error_of([&] { read_csv(write("b.csv", "x,y\n1,2\n1,u\n")); }), HasSubstr("b.csv:3: a number"));
+  EXPECT_THAT(error_of([&] { read_csv(write("c.csv", "1,2\n1,nan\n")); }), HasSubstr("c.csv:2: a number"));
+  EXPECT_THAT(error_of([&] { read_csv(write("d.csv", "x,y\n")); }), HasSubstr("d.csv: holds no numbers"));
+  EXPECT_THAT(error_of([&] { read_csv(write("e.csv", "")); }), HasSubstr("e.csv: holds no numbers"));
+  EXPECT_THAT(error_of([&] { read_csv(path("none.csv")); }), HasSubstr("none.csv: is missing"));
+}
+
+TEST_F(TablesTest, Npy) {
+  const std::vector<double> doubles = {1, 2, 3, 4, 5, 6.5};
+  const std::vector<float> floats(doubles.begin(), doubles.end());
+  EXPECT_EQ(read_table(write("d.npy", npy("<f8", "(2, 3)", doubles)), "").values, kValues);
+  EXPECT_EQ(read_table(write("f.npy", npy("<f4", "(2, 3)", floats)), "").values, kValues);
+  EXPECT_EQ(read_npy(write("v.npy", npy("<f8", "(6,)", doubles))).rows(), 6);
+}
+
+TEST_F(TablesTest, NpyErrors) {
+  const std::vector<double> v = {1, 2, 3, 4, 5, NAN};
+  EXPECT_THAT(error_of([&] { read_npy(write("a.npy", "text")); }), HasSubstr("is not a .npy file"));
+  EXPECT_THAT(error_of([&] { read_npy(write("b.npy", npy("<i8", "(2, 3)", v))); }), HasSubstr("holds '<i8'"));
+  EXPECT_THAT(error_of([&] { read_npy(write("c.npy", npy("<f8", "(2, 3)", v, "True"))); }), HasSubstr("Fortran"));
+  EXPECT_THAT(error_of([&] { read_npy(write("d.npy", npy("<f8", "(3, 3)", v))); }), HasSubstr("breaks off: 3 x 3"));
+  EXPECT_THAT(error_of([&] { read_npy(write("e.npy", npy("<f8", "(1, 2, 3)", v))); }), HasSubstr("has the shape"));
+  EXPECT_THAT(error_of([&] { read_npy(write("f.npy", npy("<f8", "(99999999999, 99999999)", v))); }),
+              HasSubstr("breaks off"));
+  EXPECT_THAT(error_of([&] { read_table(write("g.npy", npy("<f8", "(2, 3)", v)), ""); }), HasSubstr("frame 1 holds"));
+  EXPECT_THAT(error_of([&] { read_table(write("h.npy", npy("<f8", "(0, 3)", v)), ""); }), HasSubstr("no numbers"));
+}
+
+TEST_F(TablesTest, Hdf5) {
+  Eigen::MatrixXd values = kValues;
+  (*hdf5_writer(path("a.h5")))("blend", values);
+  EXPECT_EQ(read_table(path("a.h5"), "blend").values, kValues);
+  EXPECT_THAT(error_of([&] { read_table(path("a.h5"), "other"); }), HasSubstr("other: is missing"));
+  EXPECT_THAT(error_of([&] { read_table(write("b.h5", "x"), "blend"); }), HasSubstr("b.h5: "));
+  EXPECT_THAT(error_of([&] { read_table(write("c.xls", "x"), ""); }), HasSubstr("c.xls: a track is read from"));
+}
+
+TEST_F(TablesTest, LandmarksFromCsv) {
+  const auto track = read_landmarks(write("a.csv", "frame,x0,y0,x1,y1\n0,1,2,3,4\n1,5,6,7,8\n"), 25);
+  ASSERT_EQ(track.frames.size(), 2u);
+  EXPECT_EQ(track.frames[1], (Shape(2, 2) << 5, 6, 7, 8).finished());
+  EXPECT_EQ(track.scheme, "");
+  EXPECT_EQ(read_landmarks(write("b.csv", "1,2,3,4\n"), 25, "two").scheme, "two");
+  EXPECT_THAT(error_of([&] { read_landmarks(write("c.csv", "frame,x0,y0\n0,1,2\n2,1,2\n"), 25); }),
+              HasSubstr("frame 1 is expected"));
+  EXPECT_THAT(error_of([&] { read_landmarks(write("d.csv", "1,2,3\n"), 25); }),
+              HasSubstr("landmarks need the columns"));
+}
+
+TEST_F(TablesTest, LandmarksFromPtsFolder) {
+  write("f2.pts", "version: 1\nn_points: 2\n{\n1 2\n3.5 4\n}\n");
+  write("f10.pts", "version: 1\nn_points: 2\n{\n5 6\n7 8\n}\n");
+  const auto track = read_landmarks(folder_.string(), {30});
+  ASSERT_EQ(track.frames.size(), 2u);
+  EXPECT_EQ(track.frames[0], (Shape(2, 2) << 0, 1, 2.5, 3).finished()) << "1-based pixels become 0-based";
+  EXPECT_EQ(track.frames[1], (Shape(2, 2) << 4, 5, 6, 7).finished());
+  EXPECT_EQ(track.rate, Rational(30));
+  write("f11.pts", "{\n5 6\n}\n");
+  EXPECT_THAT(error_of([&] { read_landmarks(folder_.string(), 25); }), HasSubstr("f11.pts: holds 1 points"));
+  write("f11.pts", "{\n5\n}\n");
+  EXPECT_THAT(error_of([&] { read_landmarks(folder_.string(), 25); }), HasSubstr("f11.pts:2: \"x y\""));
+}
+
+}  // namespace
+}  // namespace talkgraph
