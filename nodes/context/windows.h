@@ -17,7 +17,8 @@ namespace talkgraph {
 /// from all.
 ///
 /// Streams are paired by key; an utterance that one of the three lacks is left
-/// out, and a state without a window gives no item. Throws std::runtime_error
+/// out, and a state without a window gives no item. The stream refers to the
+/// tracks given, which must outlive it. Throws std::runtime_error
 /// if no utterance is left, or lengths differ by more than two frames.
 struct ContextWindows {
   StateKind states = StateKind::contexts;
