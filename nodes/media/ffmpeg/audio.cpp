@@ -60,10 +60,12 @@ struct SoundTrack {
   std::vector<double> samples;
   int rate = 0;
   double start = 0, end = 0;
+  double tick = 0;  ///< to which times are rounded
 };
 
 SoundTrack decode(Decoder& decoder, const std::string& path) {
   SoundTrack track;
+  track.tick = av_q2d(decoder.stream().time_base);
   while (const AVFrame* frame = decoder.next()) {
     if (track.rate == 0) {
       track.rate = frame->sample_rate;
@@ -75,7 +77,7 @@ SoundTrack decode(Decoder& decoder, const std::string& path) {
       throw std::runtime_error(fmt::format("{}: its sound is damaged at {:.2f} s; cut it there or copy it again", path,
                                            static_cast<double>(track.samples.size()) / track.rate));
     append(*frame, path, track.samples);
-    track.end = decoder.time() + static_cast<double>(frame->pkt_duration) * av_q2d(decoder.stream().time_base);
+    track.end = decoder.time() + static_cast<double>(frame->pkt_duration) * track.tick;
   }
   if (track.samples.empty()) throw std::runtime_error(path + ": its sound track is empty");
   return track;
@@ -85,8 +87,9 @@ SoundTrack decode(Decoder& decoder, const std::string& path) {
 void cut_end(SoundTrack& track) {
   const double seconds = track.end - track.start;
   if (!(seconds > 0)) return;
-  const auto wanted = static_cast<std::size_t>(std::llround(seconds * track.rate));
-  if (wanted < track.samples.size()) track.samples.resize(wanted);
+  const auto too_many = std::ssize(track.samples) - std::llround(seconds * track.rate);
+  if (static_cast<double>(too_many) > track.tick * track.rate)
+    track.samples.resize(track.samples.size() - static_cast<std::size_t>(too_many));
 }
 
 /// Makes the sound start with the first picture. Less than 5 ms may be due to times

@@ -50,6 +50,10 @@ class StreamWriter {
 
   AVCodecContext& context() { return *context_; }
   AVStream& stream() { return *stream_; }
+  /// Counts time from the encoder's first sample on, its priming included. Matroska
+  /// wants it so: it takes the priming off again. With times below zero the muxer
+  /// would delay the other streams.
+  void count_priming() { offset_ = context_->initial_padding; }
 
   void open(AVDictionary* options) {
     const int opened = avcodec_open2(context_.get(), context_->codec, &options);
@@ -68,6 +72,8 @@ class StreamWriter {
       if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
       check_(got, "a frame cannot be encoded");
       if (packet_->duration == 0) packet_->duration = duration;
+      packet_->pts += offset_;
+      packet_->dts += offset_;
       av_packet_rescale_ts(packet_.get(), context_->time_base, stream_->time_base);
       packet_->stream_index = stream_->index;
       check_(av_interleaved_write_frame(&file_, packet_.get()), "cannot be written: is there room on the disk?");
@@ -80,6 +86,7 @@ class StreamWriter {
   PacketHandle packet_;
   CodecHandle context_;
   AVStream* stream_ = nullptr;
+  std::int64_t offset_ = 0;
 };
 
 AVDictionary* options(std::initializer_list<std::pair<const char*, std::string>> entries) {
@@ -165,6 +172,7 @@ class SoundWriter {
     c.time_base = {1, c.sample_rate};
     c.bit_rate = format == ClipFormat::mp4 ? 96000 : 64000;
     out_.open(nullptr);
+    if (format == ClipFormat::webm) out_.count_priming();
   }
 
   /// Encodes whole blocks up to a time, or all that is left.

@@ -95,7 +95,7 @@ class ToBgr {
   ToBgr(cv::Size size, int turns) : size_(size), turns_(turns) {}
 
   cv::Mat operator()(const AVFrame& frame) {
-    constexpr int flags = SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_BITEXACT;
+    constexpr int flags = SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_BITEXACT;
     scaler_.reset(sws_getCachedContext(scaler_.release(), frame.width, frame.height,
                                        static_cast<AVPixelFormat>(frame.format), size_.width, size_.height,
                                        AV_PIX_FMT_BGR24, flags, nullptr, nullptr, nullptr));

@@ -52,7 +52,7 @@ TEST_P(EncodeShapes, FramesAndSoundSurvive) {
 
   const double seconds = 50 / rate.value();
   const Audio heard = read_audio(file);
-  EXPECT_NEAR(heard.seconds(), seconds, 1.5 / heard.rate);
+  EXPECT_NEAR(heard.seconds(), seconds, 2 / heard.rate);
   const Eigen::Index known = static_cast<Eigen::Index>(1.1 * heard.rate);
   const Eigen::VectorXd expected = tone(1.1, heard.rate).samples;
   const double correlation =
