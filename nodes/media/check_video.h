@@ -18,7 +18,7 @@ std::vector<double> strangeness(const Video& video, double level, const Context&
 /// must be sound, and fewer than three frames are only judged by the decoder.
 struct CheckVideo {
   double level = 48;  ///< grey levels
-  double area = 0.4;  ///< share of the picture
+  double area = 0.2;  ///< share of the picture
 
   /// The video with `damaged` filled in, ascending.
   Video operator()(const Video& video, Context& context) const;
