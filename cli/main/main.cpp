@@ -10,6 +10,8 @@
 #include "cli/run.h"
 #include "cli/speak.h"
 
+extern "C" void openblas_set_num_threads(int);
+
 namespace {
 
 using namespace talkgraph;
@@ -55,7 +57,9 @@ int draw(const std::string& file, const Registry& registry, const std::vector<st
 }  // namespace
 
 int main(int argc, char** argv) {
+  // One thread inside a kernel, many items beside each other.
   cv::setNumThreads(1);
+  openblas_set_num_threads(1);
   CLI::App app{"talkgraph: learn a talking face from recordings of one speaker, then let new speech drive it"};
   app.require_subcommand(1);
   std::vector<std::string> sets, files;
