@@ -38,7 +38,7 @@ enum Kind {
 
 /// How much the jaw carries a point along.
 double jaw_share(double x, double y) {
-  return ramp(188, 236, y) * (1 - ramp(249, 266, y)) * (1 - ramp(38, 92, std::abs(x - centre_x)));
+  return ramp(188, 236, y) * (1 - ramp(249, 273, y)) * (1 - ramp(38, 92, std::abs(x - centre_x)));
 }
 
 /// Nearness to the viewer, 1 at the nose: what turning the head moves.
@@ -68,7 +68,9 @@ double lid_line(double x) {
 
 double lip_line(double x) {
   const double u = across_mouth(x);
-  return mouth_y + 1.2 * std::exp(-8 * u * u) - 0.9 * std::exp(-6 * (std::abs(u) - 0.55) * (std::abs(u) - 0.55));
+  const double corners = 1.5 * std::exp(-5 * (std::abs(u) - 1) * (std::abs(u) - 1));
+  return mouth_y - corners + 1.2 * std::exp(-8 * u * u) -
+         0.9 * std::exp(-6 * (std::abs(u) - 0.55) * (std::abs(u) - 0.55));
 }
 
 double half_width(double y) {
@@ -81,8 +83,8 @@ Movement movement(const Moment& moment) {
   const auto& h = moment.head;
   const double pout = std::max(0.0, a.protrusion), open = 1 - a.closure;
   Movement m{};
-  m.jaw_drop = 22 * a.jaw;
-  const double parted = 0.80 * m.jaw_drop + 2.2 * a.upper_lip + 2.6 * a.lower_lip + 1.2 * pout - 1.6;
+  m.jaw_drop = 18.5 * a.jaw;
+  const double parted = 0.95 * m.jaw_drop + 2.2 * a.upper_lip + 2.6 * a.lower_lip + 1.2 * pout - 1.6;
   const double free = std::max(0.0, parted);
   const double bitten = std::min(free, 2.4);
   m.gap = open * (free + a.bite * (bitten - free));

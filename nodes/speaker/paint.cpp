@@ -241,12 +241,12 @@ void paint_background(Picture& picture, Random& random) {
 }
 
 void paint_shoulders(Picture& picture, Random& random) {
-  const Outline outline = mirrored({{centre_x, 262},
-                                    {centre_x + 34, 259},
-                                    {centre_x + 46, 258},
-                                    {centre_x + 80, 265},
-                                    {centre_x + 118, 274},
-                                    {centre_x + 146, 284},
+  const Outline outline = mirrored({{centre_x, 275},
+                                    {centre_x + 32, 271},
+                                    {centre_x + 46, 266},
+                                    {centre_x + 80, 271},
+                                    {centre_x + 118, 278},
+                                    {centre_x + 146, 287},
                                     {centre_x + 158, 300},
                                     {centre_x, 300}});
   const auto knit = noise(1.2, random), folds = noise(22, random);
@@ -254,13 +254,13 @@ void paint_shoulders(Picture& picture, Random& random) {
   for (int r = 0; r < height; ++r)
     for (int c = 0; c < width; ++c) {
       const double x = (c + 0.5) / paint_scale, y = (r + 0.5) / paint_scale;
-      const double light = 0.95 + 0.35 * bell(x, y, 100, 262, 60, 22) - 0.35 * ramp(230, 330, x) + 0.06 * knit(r, c) +
+      const double light = 0.95 + 0.35 * bell(x, y, 100, 272, 60, 20) - 0.35 * ramp(230, 330, x) + 0.06 * knit(r, c) +
                            0.06 * folds(r, c) + 0.04 * std::sin(x * 2.1);
       cloth(r, c) = rgb(44, 62, 92) * static_cast<float>(light);
     }
   mix(picture, fill(outline, 0.7), cloth);
   const auto collar = plane_of([](double x, double y) {
-    const double edge = 263 + 10 * std::pow((x - centre_x) / 44, 2) * -1 + 12;
+    const double edge = 269 + 10 * std::pow((x - centre_x) / 44, 2) * -1 + 12;
     return std::abs(x - centre_x) < 44 ? std::exp(-0.5 * std::pow((y - edge) / 1.4, 2)) : 0.0;
   });
   shade(picture, collar, -0.35);
@@ -270,10 +270,10 @@ void paint_neck(Picture& picture, const Plane& grain) {
   const Outline outline = mirrored({{centre_x, 200},
                                     {centre_x + 46, 200},
                                     {centre_x + 44, 240},
-                                    {centre_x + 45, 258},
-                                    {centre_x + 40, 268},
-                                    {centre_x + 22, 276},
-                                    {centre_x, 278}});
+                                    {centre_x + 46, 266},
+                                    {centre_x + 44, 276},
+                                    {centre_x + 26, 284},
+                                    {centre_x, 288}});
   Picture skin(height, width);
   for (int r = 0; r < height; ++r)
     for (int c = 0; c < width; ++c) {
@@ -321,7 +321,7 @@ Picture paint_skin(const Plane& grain, Random& random) {
             ramp(186, 212, y + 0.12 * std::abs(x - centre_x)) * (1 - 0.55 * bells(x, y, 24, 196, 12, 12));
         return beard + 0.8 * bell(x, y, centre_x, 190, 17, 5);
       }),
-      rgb(150, 124, 112), 0.24);
+      rgb(150, 124, 112), 0.17);
   mix(skin,
       plane_of([](double x, double y) { return bells(x, y, 31, 131, 15, 8) + 0.7 * bells(x, y, 30, 147, 13, 4); }),
       rgb(168, 106, 96), 0.28);
@@ -386,7 +386,7 @@ void paint_lines(Picture& picture) {
           const double v = (std::abs(x - centre_x) - eye_distance) / eye_half_width;
           const double crease = 124.5 + 5.5 * v * v;
           return std::abs(v) < 1.15
-                     ? std::exp(-0.5 * std::pow((y - crease) / 1.1, 2)) * (1 - ramp(0.8, 1.15, std::abs(v)))
+                     ? std::exp(-0.5 * std::pow((y - crease) / 1.3, 2)) * (1 - ramp(0.8, 1.15, std::abs(v)))
                      : 0.0;
         }),
         -0.34);
@@ -423,12 +423,12 @@ void paint_brows(Picture& picture, Random& random) {
 void paint_hair(Picture& picture, Random& random) {
   const Outline mass = rounded(mirrored({{centre_x, 19},
                                          {centre_x + 34, 19},
-                                         {centre_x + 62, 32},
-                                         {centre_x + 75, 60},
-                                         {centre_x + 77, 92},
+                                         {centre_x + 58, 28},
+                                         {centre_x + 74, 52},
+                                         {centre_x + 77, 88},
                                          {centre_x + 73, 118},
-                                         {centre_x + 69, 142},
-                                         {centre_x + 66, 142},
+                                         {centre_x + 69, 136},
+                                         {centre_x + 66.5, 136},
                                          {centre_x + 65, 118},
                                          {centre_x + 62, 94},
                                          {centre_x + 56, 74},
@@ -449,10 +449,11 @@ void paint_hair(Picture& picture, Random& random) {
     for (int i = 0; i < 3400; ++i) {
       // A parting on the left: hair of the crown sweeps right, at the sides it falls.
       const double angle = random.uniform(-1.66, 1.66), out = random.uniform(0, 1);
-      const double r = 0.70 + 0.31 * out;
-      const Point root(centre_x + 77 * r * std::sin(angle), 118 - 99 * r * std::cos(angle));
+      const double r = 0.72 + 0.29 * out;
+      const Point root(centre_x + 78 * r * std::sin(angle), 112 - 95 * r * std::cos(angle));
       const double sweep = angle > -0.55 ? 1 : -1;
-      const double length = random.uniform(7, 19), down = ramp(0.5, 1.4, std::abs(angle));
+      const double down = ramp(0.5, 1.4, std::abs(angle));
+      const double length = random.uniform(7, 19) * (1 - 0.62 * ramp(1.15, 1.55, std::abs(angle)));
       const Point along(sweep * std::cos(angle) * (1 - down) + (angle > 0 ? 0.10 : -0.10) * down,
                         sweep * std::sin(angle) * (1 - down) * 0.9 + down);
       const Point tip =

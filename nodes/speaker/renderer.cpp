@@ -169,8 +169,8 @@ cv::Mat Renderer::Parts::warp(const Movement& m) const {
 
 Patch Renderer::Parts::inner_mouth(const Articulators& a, const Movement& m) const {
   Patch patch({centre_x - 30, 194}, 60, 52, {16, 12, 38});
-  const double biting = mouth_y + 3.4, lower_edge = mouth_y + 1.6 + 0.80 * m.jaw_drop;
-  const double rise = a.tongue_tip * (4.5 + 0.32 * m.jaw_drop);
+  const double biting = mouth_y + 3.4, lower_edge = mouth_y + 2.8 + 0.95 * m.jaw_drop;
+  const double rise = a.tongue_tip * (5.5 + 0.38 * m.jaw_drop);
   lay(patch, tongue, {centre_x, lower_edge + 7.5 - rise});
   lay(patch, lower_teeth, {centre_x, lower_edge + 4});
   lay(patch, upper_teeth, {centre_x, biting - 4.6});
