@@ -13,7 +13,7 @@ namespace talkgraph {
 /// Frame t covers t / rate to t / rate + window. Only whole frames are cut, but
 /// at least one: sound shorter than a window is padded with zeros. Or, `centred`,
 /// frame t lies around (t + ½) / rate, as video frames do; there are
-/// round(seconds · rate) of them, at least 1, with zeros beyond the ends.
+/// seconds · rate of them, rounded up, at least 1, with zeros beyond the ends.
 ///
 /// Throws std::runtime_error on NaN or infinite samples, std::invalid_argument
 /// where window or hop is shorter than a sample. Thesis §3.2, §3.5.1.

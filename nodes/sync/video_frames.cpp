@@ -13,7 +13,8 @@ Eigen::Index video_frames(const Track& track, const Audio* audio, const Rational
   if (std::abs(seconds - reach) > tolerance)
     throw std::runtime_error("sound of " + std::to_string(seconds) + " s beside a track of " + std::to_string(reach) +
                              " s: both must be of one utterance");
-  return std::max<Eigen::Index>(1, std::lround(seconds * fps.value()));
+  // A frame begun is a frame: a clip lasts as long as its sound.
+  return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(seconds * fps.value() - 1e-6)));
 }
 
 double video_time(Eigen::Index n, const Rational& fps) { return (static_cast<double>(n) + 0.5) / fps.value(); }

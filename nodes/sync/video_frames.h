@@ -5,7 +5,7 @@
 
 namespace talkgraph {
 
-/// Video frames in sound of this length: round(seconds × fps), at least 1. The
+/// Video frames in sound of this length: seconds × fps rounded up, at least 1. The
 /// length is that of `audio`, or as far as `track` reaches where there is none,
 /// the last centre lying as far from the end as the first from the beginning.
 /// Throws std::runtime_error if sound and track are clearly not of one utterance.
