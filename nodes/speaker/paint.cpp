@@ -420,21 +420,18 @@ void paint_brows(Picture& picture, Random& random) {
   });
 }
 
+/// On the skull, `angle` from the top clockwise; 1 is the outline of the hair.
+Point crown(double angle, double out) {
+  return {centre_x + 78 * out * std::sin(angle), 112 - 95 * out * std::cos(angle)};
+}
+
 void paint_hair(Picture& picture, Random& random) {
-  const Outline mass = rounded(mirrored({{centre_x, 19},
-                                         {centre_x + 34, 19},
-                                         {centre_x + 58, 28},
-                                         {centre_x + 74, 52},
-                                         {centre_x + 77, 88},
-                                         {centre_x + 73, 118},
-                                         {centre_x + 69, 136},
-                                         {centre_x + 66.5, 136},
-                                         {centre_x + 65, 118},
-                                         {centre_x + 62, 94},
-                                         {centre_x + 56, 74},
-                                         {centre_x + 40, 62},
-                                         {centre_x + 18, 57},
-                                         {centre_x, 57}}));
+  Outline right;
+  for (double angle = 0; angle < 1.6; angle += 0.05) right.push_back(crown(angle, 0.985));
+  for (const auto& [off, y] :
+       {std::pair(69.0, 136.0), {66.5, 136}, {65, 118}, {62, 94}, {56, 74}, {40, 62}, {18, 57}, {0, 57}})
+    right.emplace_back(centre_x + off, y);
+  const Outline mass = rounded(mirrored(right));
   const auto shadow = rounded(mirrored({{centre_x, 46},
                                         {centre_x + 44, 50},
                                         {centre_x + 66, 76},
@@ -449,9 +446,8 @@ void paint_hair(Picture& picture, Random& random) {
     for (int i = 0; i < 3400; ++i) {
       // A parting on the left: hair of the crown sweeps right, at the sides it falls.
       const double angle = random.uniform(-1.66, 1.66), out = random.uniform(0, 1);
-      const double r = 0.72 + 0.29 * out;
-      const Point root(centre_x + 78 * r * std::sin(angle), 112 - 95 * r * std::cos(angle));
-      const double sweep = angle > -0.55 ? 1 : -1;
+      const Point root = crown(angle, 1.01 - (0.29 + 0.11 * std::cos(angle)) * (1 - out));
+      const double sweep = angle > -0.55 + 0.05 * random.normal() ? 1 : -1;
       const double down = ramp(0.5, 1.4, std::abs(angle));
       const double length = random.uniform(7, 19) * (1 - 0.62 * ramp(1.15, 1.55, std::abs(angle)));
       const Point along(sweep * std::cos(angle) * (1 - down) + (angle > 0 ? 0.10 : -0.10) * down,
@@ -507,7 +503,7 @@ cv::Mat paint_teeth(const std::vector<double>& widths, const std::vector<double>
         const double arch = 1 - std::pow(std::abs(x) / 25, 2.2) * 0.75;
         const double height = sign * y;  // grows towards the biting edge
         const double root = ramp(-5, 2, height);
-        const double light = (0.62 + 0.30 * root) * arch * (1 - 0.30 * gap) * (1 - 0.10 * t * t) * (1 - 0.05 * (x > 0));
+        const double light = (0.62 + 0.30 * root) * arch * (1 - 0.16 * gap) * (1 - 0.10 * t * t) * (1 - 0.05 * (x > 0));
         const Colour tone = rgb(238, 230 - 6 * warmth, 212 - 16 * warmth) * static_cast<float>(light);
         return {tone, 1 - ramp(edge - 0.25, edge + 0.25, height)};
       }

@@ -180,7 +180,7 @@ Patch Renderer::Parts::inner_mouth(const Articulators& a, const Movement& m) con
   const double left = gap.upper.front().x(), right = gap.upper.back().x();
   dim(patch, gap.upper, [&](double x, double depth) {
     const double u = std::abs(2 * (x - left) / (right - left) - 1);
-    return (0.42 + 0.58 * ramp(-0.5, 4.5, depth)) * (1 - 0.72 * ramp(0.45, 1.0, u)) * (1 - 0.25 * ramp(8, 24, depth));
+    return (0.56 + 0.44 * ramp(-0.5, 4.0, depth)) * (1 - 0.72 * ramp(0.45, 1.0, u)) * (1 - 0.25 * ramp(8, 24, depth));
   });
   return patch;
 }
