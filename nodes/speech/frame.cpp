@@ -23,7 +23,8 @@ Frames Frame::operator()(const Audio& audio) const {
   const auto begin = [&](Eigen::Index t) {
     return static_cast<Eigen::Index>(std::floor((static_cast<double>(t) * step - lead) / num + 0.5));
   };
-  Eigen::Index count = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(audio.seconds() * rate.value() - 1e-6)));
+  Eigen::Index count =
+      std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(audio.seconds() * rate.value() - 1e-6)));
   if (!centred) count += 1;
   while (!centred && count > 1 && begin(count - 1) + length > samples) --count;
 

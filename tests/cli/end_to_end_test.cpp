@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "cli/registry.h"
+#include "cli/run.h"
+#include "cli/speak.h"
+#include "nodes/media/video_file.h"
+
+namespace talkgraph::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// The main job, small: a speaker of eight sentences is learnt, two are
+// synthesised, and the model then speaks a sentence that it has never heard.
+TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
+  const fs::path folder = fs::path(testing::TempDir()) / "talkgraph_end_to_end";
+  fs::remove_all(folder);
+  const Registry registry = all_nodes();
+  RunCommand run;
+  run.sets = {"sentences=8", "held_out=2"};
+  run.folder = folder;
+  run.quiet = true;
+  ASSERT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, registry), success);
+  const Json metrics = Json::parse(read(folder / "metrics.json"));
+  const auto& rows = metrics["scores"]["rows"];
+  ASSERT_TRUE(rows.contains("SSGPDM"));
+  EXPECT_EQ(rows["SSGPDM"]["sequences"], 2);
+  EXPECT_LT(rows["SSGPDM"]["amse_share"], rows["training mean"]["amse_share"]);
+  for (const char* file : {"report.html", "scores.csv", "run.json", "graph.resolved.json", "log.txt", "model.h5"})
+    EXPECT_TRUE(fs::exists(folder / file)) << file;
+
+  SpeakCommand words;
+  words.model = (folder / "model.h5").string();
+  words.text = "Bob may buy a blue boat.";
+  words.output = folder / "said.mp4";
+  words.visemes = folder / "said.tsv";
+  words.quiet = true;
+  ASSERT_EQ(speak(words, registry), success);
+  const Video clip = open_video((folder / "said.mp4").string());
+  EXPECT_GT(clip.source->frames(), 25);
+  EXPECT_EQ(clip.source->frames(), static_cast<std::int64_t>(clip.read_all().size()));
+  EXPECT_NE(read(folder / "said.tsv").find("\tA\n"), std::string::npos) << "lips close on b and m";
+  fs::remove_all(folder);
+}
+
+TEST(EndToEnd, RefusesAFolderThatCannotBeWritten) {
+  const fs::path file = fs::path(testing::TempDir()) / "talkgraph_in_the_way";
+  std::ofstream(file) << "x";
+  RunCommand run;
+  run.folder = file / "run";
+  run.quiet = true;
+  EXPECT_THROW(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, all_nodes()), std::runtime_error);
+  fs::remove(file);
+}
+
+TEST(EndToEnd, SaysWhatIsWrongWithAGraph) {
+  RunCommand run;
+  run.quiet = true;
+  EXPECT_EQ(run_file("nowhere.json", run, all_nodes()), usage);
+  run.sets = {"sentences=0"};
+  EXPECT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, all_nodes()), usage);
+}
+
+}  // namespace
+}  // namespace talkgraph::cli

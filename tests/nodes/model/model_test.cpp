@@ -1,0 +1,68 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "nodes/model/load.h"
+#include "nodes/model/save.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::HasSubstr;
+
+class ModelFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    context.folder = std::filesystem::path(testing::TempDir()) / "talkgraph_model";
+    std::filesystem::create_directories(context.folder);
+    contexts.alphabet = {"aa", "b"};
+    contexts.states = {{{}, {0.5, 0.5}, {0, 0}}};
+    mean.values = Eigen::RowVector3d(1, 2, 3);
+    base.frames = video_from_frames({cv::Mat(4, 6, CV_8UC3, cv::Scalar(1, 2, 3))}, Rational(25));
+  }
+  void TearDown() override { std::filesystem::remove_all(context.folder); }
+  std::string file() const { return (context.folder / "model.h5").string(); }
+
+  Context context;
+  AppearanceModel face;
+  BaseClip base;
+  Vlmm contexts;
+  Ssgpdm states;
+  Track mean;
+};
+
+TEST_F(ModelFile, ComesBackInItsParts) {
+  const SaveModel save{"model.h5", {"{\"nodes\": {}}"}};
+  EXPECT_EQ(save(face, base, contexts, states, mean, context).path, "model.h5");
+  EXPECT_FALSE(std::filesystem::exists(file() + ".part"));
+  const TalkingFace back = LoadModel{{file()}}();
+  EXPECT_EQ(back.contexts.alphabet, contexts.alphabet);
+  EXPECT_EQ(back.mean.values, mean.values);
+  EXPECT_EQ(back.base.frames.read_all().at(0).at<cv::Vec3b>(3, 5), cv::Vec3b(1, 2, 3));
+  EXPECT_EQ(model_graph(file()), "{\"nodes\": {}}");
+}
+
+TEST_F(ModelFile, SaysWhatIsWrongWithAFile) {
+  const auto complaint = [&] {
+    try {
+      load_model(file());
+    } catch (const std::runtime_error& e) {
+      return std::string(e.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_THAT(complaint(), HasSubstr("there is no such model file"));
+  double number = 1;
+  (*hdf5_writer(file()))("number", number);
+  EXPECT_THAT(complaint(), HasSubstr("not a talkgraph model"));
+  std::string format = "talkgraph model 99";
+  (*hdf5_writer(file()))("format", format);
+  EXPECT_THAT(complaint(), HasSubstr("\"talkgraph model 99\""));
+  SaveModel{}(face, base, contexts, states, mean, context);
+  std::filesystem::resize_file(file(), std::filesystem::file_size(file()) / 2);
+  EXPECT_THAT(complaint(), HasSubstr("model.h5"));
+}
+
+}  // namespace
+}  // namespace talkgraph
