@@ -7,29 +7,25 @@
 #include "cli/run.h"
 #include "cli/speak.h"
 #include "nodes/media/video_file.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string read(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // The main job, small: a speaker of eight sentences is learnt, two are
 // synthesised, and the model then speaks a sentence that it has never heard.
 TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
-  const fs::path folder = fs::path(testing::TempDir()) / "talkgraph_end_to_end";
-  fs::remove_all(folder);
+  const test::TemporaryFolder temporary;
+  const fs::path folder = temporary.path() / "run";
   const Registry registry = all_nodes();
   RunCommand run;
   run.sets = {"sentences=8", "held_out=2"};
   run.folder = folder;
   run.quiet = true;
   ASSERT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, registry), success);
-  const Json metrics = Json::parse(read(folder / "metrics.json"));
+  const Json metrics = Json::parse(temporary.read("run/metrics.json"));
   const auto& rows = metrics["scores"]["rows"];
   ASSERT_TRUE(rows.contains("SSGPDM"));
   EXPECT_EQ(rows["SSGPDM"]["sequences"], 2);
@@ -47,18 +43,15 @@ TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
   const Video clip = open_video((folder / "said.mp4").string());
   EXPECT_GT(clip.source->frames(), 25);
   EXPECT_EQ(clip.source->frames(), static_cast<std::int64_t>(clip.read_all().size()));
-  EXPECT_NE(read(folder / "said.tsv").find("\tA\n"), std::string::npos) << "lips close on b and m";
-  fs::remove_all(folder);
+  EXPECT_NE(temporary.read("run/said.tsv").find("\tA\n"), std::string::npos) << "lips close on b and m";
 }
 
 TEST(EndToEnd, RefusesAFolderThatCannotBeWritten) {
-  const fs::path file = fs::path(testing::TempDir()) / "talkgraph_in_the_way";
-  std::ofstream(file) << "x";
+  const test::TemporaryFolder temporary;
   RunCommand run;
-  run.folder = file / "run";
+  run.folder = temporary.write("in_the_way", "x") + "/run";
   run.quiet = true;
   EXPECT_THROW(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, all_nodes()), std::runtime_error);
-  fs::remove(file);
 }
 
 TEST(EndToEnd, SaysWhatIsWrongWithAGraph) {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "cli/registry.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
 namespace {
@@ -43,10 +44,9 @@ TEST(Speak, RefusesFilesThatAreNoModels) {
   c.output = "clip.mp4";
   c.model = "nowhere.h5";
   EXPECT_EQ(complaint(c), "nowhere.h5: there is no such model file");
-  c.model = testing::TempDir() + "talkgraph_no_model.h5";
-  std::ofstream(c.model) << "text";
+  const test::TemporaryFolder folder;
+  c.model = folder.write("model.h5", "text");
   EXPECT_EQ(complaint(c), c.model + ": is missing or not an HDF5 file");
-  std::filesystem::remove(c.model);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/temporary_folder.h"
+
 namespace talkgraph {
 
 struct Part {
@@ -69,8 +71,8 @@ std::string hash(Whole w) {
 
 class ArchiveFile : public testing::Test {
  protected:
-  std::string path = testing::TempDir() + "talkgraph_archive_test.h5";
-  void TearDown() override { std::filesystem::remove(path); }
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("archive.h5");
 };
 
 TEST_F(ArchiveFile, RestoresEveryKindOfMember) {

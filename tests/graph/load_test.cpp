@@ -6,6 +6,7 @@
 
 #include "graph/graph.h"
 #include "tests/graph/toy_nodes.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -15,18 +16,7 @@ using testing::HasSubstr;
 /// A folder of graph files that vanishes with the test.
 class Load : public testing::Test {
  protected:
-  void SetUp() override {
-    folder = std::filesystem::path(testing::TempDir()) /
-             ("talkgraph_load_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
-  std::string write(const std::string& name, const std::string& text) {
-    std::filesystem::create_directories((folder / name).parent_path());
-    std::ofstream(folder / name) << text;
-    return (folder / name).string();
-  }
+  std::string write(const std::string& name, const std::string& text) { return temporary.write(name, text); }
   std::optional<Graph> load(const std::string& text, std::vector<std::string> sets = {}) {
     diagnostics = {};
     return load_graph(write("g.json", text), registry, diagnostics, {std::move(sets)});
@@ -40,7 +30,8 @@ class Load : public testing::Test {
 
   Registry registry = toy::registry();
   Diagnostics diagnostics;
-  std::filesystem::path folder;
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary.path();
 };
 
 const char* const train_then_apply = R"({

@@ -6,6 +6,7 @@
 #include "runtime/executor.h"
 #include "tests/runtime/graph_builder.h"
 #include "tests/runtime/toy_nodes.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -21,19 +22,16 @@ std::string read(const fs::path& path) {
 class RunFolderTest : public testing::Test {
  protected:
   RunFolderTest() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    home_ = fs::temp_directory_path() / ("talkgraph-" + std::to_string(getpid()) + "-" + test->name());
-    fs::create_directories(home_);
     b_.graph.name = "pipelines/lips.json";
     b_.graph.resolved = {{"description", "lips"}};
     b_.output("out", b_.add("track", "toy.fail_at", {b_.add("source", "toy.source")}, {{"key", "u3"}}));
   }
-  ~RunFolderTest() override { fs::remove_all(home_); }
   Json record() const { return Json::parse(read(home_ / "run/run.json")); }
 
   const Registry registry_ = toy::registry();
   GraphBuilder b_{registry_};
-  fs::path home_;
+  const test::TemporaryFolder temporary_;
+  const fs::path home_ = temporary_.path();
 };
 
 TEST_F(RunFolderTest, RecordsARun) {

@@ -12,6 +12,7 @@
 #include "nodes/context/segment.h"
 #include "nodes/context/train.h"
 #include "nodes/context/windows.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -233,7 +234,8 @@ TEST(ContextWindows, RefusesTracksOfOtherLengths) {
 }
 
 TEST(Vlmm, IsSavedWhole) {
-  const std::string path = testing::TempDir() + "talkgraph_vlmm.h5";
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("vlmm.h5");
   Vlmm v = ContextTrain{.order = 3, .prune = 0, .keep = 0, .repeating = false}({{"x", stream("aabbabacab")}}), back;
   (*hdf5_writer(path))("v", v);
   (*hdf5_reader(path))("v", back);
@@ -242,7 +244,6 @@ TEST(Vlmm, IsSavedWhole) {
   EXPECT_EQ(back.states.size(), v.states.size());
   EXPECT_FALSE(back.repeating);
   EXPECT_EQ(back.states.back().memory, v.states.back().memory);
-  std::remove(path.c_str());
 }
 
 // A phone that was never heard is spoken for by the commonest of its viseme.

@@ -8,6 +8,7 @@
 #include "nodes/face/geometry.h"
 #include "nodes/face/sampling.h"
 #include "synthetic_face.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -61,14 +62,14 @@ TEST(BuildAppearance, IsTheSameEachTime) {
 
 TEST(BuildAppearance, SurvivesSavingAndLoading) {
   auto m = build(test::synthetic_prototypes());
-  const auto path = (std::filesystem::path(testing::TempDir()) / "face_model.h5").string();
+  const test::TemporaryFolder folder;
+  const auto path = folder.file("face.h5");
   {
     auto out = hdf5_writer(path);
     fields(*out, m);
   }
   AppearanceModel loaded;
   fields(*hdf5_reader(path), loaded);
-  std::filesystem::remove(path);
   EXPECT_EQ(hash(loaded), hash(m));
 }
 

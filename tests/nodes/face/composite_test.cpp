@@ -16,6 +16,7 @@
 #include "nodes/face/strip.h"
 #include "nodes/face/track.h"
 #include "synthetic_face.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -166,8 +167,9 @@ TEST(SideBySide, HasTheShorterLengthAndEvenSides) {
 }
 
 TEST(Sinks, WriteTheirPictures) {
+  const test::TemporaryFolder folder;
   Context context;
-  context.folder = std::filesystem::path(testing::TempDir()) / "face_sinks";
+  context.folder = folder.path();
   context.item = "utterance";
   const FrameLabels labels{{"sil", "aa"}, Rational(25)};
   const auto strip = FrameStrip{}(talking(3), &labels, context);
@@ -175,7 +177,6 @@ TEST(Sinks, WriteTheirPictures) {
   EXPECT_EQ(cv::imread((context.folder / strip.path).string()).cols, 3 * 160);
   const auto modes = FaceModes{}(model(), context);
   EXPECT_FALSE(cv::imread((context.folder / modes.path).string()).empty());
-  std::filesystem::remove_all(context.folder);
   EXPECT_THROW(FrameStrip{}(video_from_frames({}, Rational(25)), nullptr, context), std::runtime_error);
   context.folder = "/proc/nowhere";
   EXPECT_THROW(FaceModes{}(model(), context), std::runtime_error);

@@ -9,6 +9,7 @@
 #include "nodes/latent/sequence_objective.h"
 #include "nodes/latent/sgpdm_objective.h"
 #include "tests/nodes/latent/textbook.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -245,10 +246,10 @@ TEST(Sgpdm, IsTheSameAfterSavingAndLoading) {
   TrainSgpdm train;
   train.iterations = 5;
   Sgpdm model = train(wavy(5, 4), context), loaded;
-  const auto path = (std::filesystem::temp_directory_path() / "talkgraph_sgpdm_test.h5").string();
+  const test::TemporaryFolder folder;
+  const auto path = folder.file("sgpdm.h5");
   fields(*hdf5_writer(path), model);
   fields(*hdf5_reader(path), loaded);
-  std::filesystem::remove(path);
   const auto hash = [](Sgpdm& m) { return content_hash([&](Archive& ar) { fields(ar, m); }); };
   EXPECT_EQ(hash(model), hash(loaded));
   EXPECT_EQ(loaded.visual.kernel.terms.size(), 3u);

@@ -8,6 +8,7 @@
 #include "nodes/mapping/register.h"
 #include "nodes/mapping/ssgpdm_synthesise.h"
 #include "tests/nodes/latent/textbook.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -191,10 +192,10 @@ TEST(Synthesis, RefusesWrongDimensionsGapsAndNan) {
 
 TEST(Ssgpdm, SynthesisesTheSameAfterSavingAndLoading) {
   Ssgpdm saved = model(), loaded;
-  const auto path = (std::filesystem::temp_directory_path() / "talkgraph_ssgpdm_test.h5").string();
+  const test::TemporaryFolder folder;
+  const auto path = folder.file("ssgpdm.h5");
   fields(*hdf5_writer(path), saved);
   fields(*hdf5_reader(path), loaded);
-  std::filesystem::remove(path);
   const auto s = speech(8);
   Context context;
   const auto parts = segments_of({{"b", 4}, {"q-a", 4}});

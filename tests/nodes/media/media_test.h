@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -15,32 +14,22 @@
 
 #include "nodes/types/audio.h"
 #include "nodes/types/video.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 
 /// A test with a folder of its own.
 class MediaTest : public testing::Test {
  protected:
-  MediaTest() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() / (std::string("talkgraph-") + info->test_suite_name() + "-" +
-                                                        info->name() + "-" + std::to_string(getpid()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~MediaTest() override { std::filesystem::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
-    return path(name);
-  }
+  std::string path(const std::string& name) const { return temporary_.file(name); }
+  std::string write(const std::string& name, const std::string& bytes) const { return temporary_.write(name, bytes); }
   static std::string bytes(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 };
 
 inline std::string error_of(const std::function<void()>& action) {

@@ -5,6 +5,7 @@
 
 #include "nodes/model/load.h"
 #include "nodes/model/save.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -14,16 +15,15 @@ using testing::HasSubstr;
 class ModelFile : public testing::Test {
  protected:
   void SetUp() override {
-    context.folder = std::filesystem::path(testing::TempDir()) / "talkgraph_model";
-    std::filesystem::create_directories(context.folder);
+    context.folder = folder.path();
     contexts.alphabet = {"aa", "b"};
     contexts.states = {{{}, {0.5, 0.5}, {0, 0}}};
     mean.values = Eigen::RowVector3d(1, 2, 3);
     base.frames = video_from_frames({cv::Mat(4, 6, CV_8UC3, cv::Scalar(1, 2, 3))}, Rational(25));
   }
-  void TearDown() override { std::filesystem::remove_all(context.folder); }
-  std::string file() const { return (context.folder / "model.h5").string(); }
+  std::string file() const { return folder.file("model.h5"); }
 
+  const test::TemporaryFolder folder;
   Context context;
   AppearanceModel face;
   BaseClip base;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "nodes/phones/write_labels.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 
@@ -81,17 +82,14 @@ TEST(LabelFiles, TakeEmptyTracks) {
 }
 
 TEST(WriteLabels, WritesBelowTheRunFolder) {
+  const test::TemporaryFolder folder;
   Context context;
-  context.folder = testing::TempDir() + "phones_write_labels";
+  context.folder = folder.path();
   context.item = "clip1";
   const Artifact file = WriteLabels{}({kPhones}, nullptr, context);
   EXPECT_EQ(file.path, "labels/clip1.TextGrid");
-  std::ifstream in(context.folder / file.path);
-  std::stringstream text;
-  text << in.rdbuf();
-  EXPECT_EQ(parse_text_grid(text.str(), "x")[0].intervals, kPhones);
+  EXPECT_EQ(parse_text_grid(folder.read(file.path), "x")[0].intervals, kPhones);
   EXPECT_EQ((WriteLabels{LabelFormat::htk, "lab"}({kPhones}, nullptr, context).path), "lab/clip1.lab");
-  std::filesystem::remove_all(context.folder);
 }
 
 TEST(WriteLabels, SaysThatItCannotWrite) {

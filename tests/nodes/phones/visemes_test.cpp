@@ -7,6 +7,7 @@
 
 #include "nodes/phones/mouth_shapes.h"
 #include "nodes/phones/write_visemes.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -83,12 +84,12 @@ TEST(VisemeText, IsWhatRhubarbWrites) {
 }
 
 TEST(WriteVisemes, NamesTheFileForTheItem) {
+  const test::TemporaryFolder folder;
   Context context;
-  context.folder = testing::TempDir() + "phones_write_visemes";
+  context.folder = folder.path();
   context.item = "clip1";
   EXPECT_EQ((WriteVisemes{VisemeFormat::json, "out"}({{{"m", 0, 1}}}, context).path), "out/clip1.json");
   EXPECT_TRUE(std::filesystem::exists(context.folder / "out/clip1.json"));
-  std::filesystem::remove_all(context.folder);
 }
 
 }  // namespace

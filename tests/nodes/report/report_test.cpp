@@ -10,6 +10,7 @@
 #include "nodes/report/write.h"
 #include "nodes/report/write_plot.h"
 #include "nodes/report/write_table.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -18,15 +19,10 @@ using testing::HasSubstr;
 
 class Report : public testing::Test {
  protected:
-  void SetUp() override {
-    context.folder = std::filesystem::path(testing::TempDir()) / "talkgraph_report";
-    std::filesystem::create_directories(context.folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(context.folder); }
-  std::string read(const std::string& name) {
-    std::ifstream in(context.folder / name);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  void SetUp() override { context.folder = folder.path(); }
+  std::string read(const std::string& name) const { return folder.read(name); }
+
+  const test::TemporaryFolder folder;
   Context context;
   Table table{"scores", "method", {"acc", "n"}, {"a, \"b\"", "c"}, {{0.5, 3}, {NAN, 4}}};
 };
