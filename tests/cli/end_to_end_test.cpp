@@ -14,14 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The main job, small: a speaker of eight sentences is learnt, two are
+// The main job, small: a speaker of ten sentences is learnt, two more are
 // synthesised, and the model then speaks a sentence that it has never heard.
 TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
   const test::TemporaryFolder temporary;
   const fs::path folder = temporary.path() / "run";
   const Registry registry = all_nodes();
   RunCommand run;
-  run.sets = {"sentences=8", "held_out=2"};
+  run.sets = {"sentences=12", "held_out=2"};
   run.folder = folder;
   run.quiet = true;
   ASSERT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, registry), success);
