@@ -43,8 +43,8 @@ class RunFolder final : public RunObserver {
   Json header(const std::string& status) const;
 
   const Graph& graph_;
-  std::filesystem::path path_;
   Clock::time_point started_ = Clock::now();
+  std::filesystem::path path_;  // names itself after started_
   std::mutex mutex_;
   std::ofstream log_;
 };

@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
   openblas_set_num_threads(1);
   CLI::App app{"talkgraph: learn a talking face from recordings of one speaker, then let new speech drive it"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", "talkgraph " TALKGRAPH_VERSION);
   std::vector<std::string> sets, files;
   std::string graph, word, type, format = "svg", output;
   RunCommand run;

@@ -7,7 +7,7 @@
 namespace talkgraph {
 
 /// The context label of each frame of a phone stream: its memory and the phone,
-/// joined by '-', oldest first (spec §5, thesis Figure 5.9). An unseen phone or
+/// joined by '-', oldest first (docs/method.md §5, thesis Figure 5.9). An unseen phone or
 /// transition gives the phone alone. With a model of runs all frames of a run
 /// carry the run's context.
 struct ContextDecode {

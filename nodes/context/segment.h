@@ -17,7 +17,7 @@ inline constexpr EnumNames<StateKind, 2> enum_names<StateKind>{
     {{StateKind::contexts, "contexts"}, {StateKind::phones, "phones"}}};
 
 /// Cuts a stream of context labels into segments that do not overlap and cover
-/// every frame (spec §5, thesis Algorithm 4). From the last frame backwards,
+/// every frame (docs/method.md §5, thesis Algorithm 4). From the last frame backwards,
 /// the context there becomes its longest trainable suffix, which takes as many
 /// frames as it has phones (runs of frames, with a model of runs). At the first
 /// frame a label that is too long loses its oldest phones. A phone unknown to

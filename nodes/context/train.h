@@ -6,7 +6,7 @@
 
 namespace talkgraph {
 
-/// Learns a variable length Markov model from phone-per-frame streams (spec §5,
+/// Learns a variable length Markov model from phone-per-frame streams (docs/method.md §5,
 /// thesis §5.2.1, Algorithm 3).
 ///
 /// Strings of up to order + 1 phones are counted; those in a share of at most

@@ -1,7 +1,8 @@
 #include "nodes/evaluate/mouth_lag.h"
 
 #include <cmath>
-#include <stdexcept>
+
+#include "nodes/evaluate/lips.h"
 
 namespace talkgraph {
 namespace {
@@ -29,16 +30,8 @@ double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 }  // namespace
 
 std::optional<Scores> MouthLag::operator()(const LandmarkTrack& landmarks, const Audio& audio) const {
-  const auto frames = static_cast<Eigen::Index>(landmarks.frames.size());
-  Eigen::VectorXd opening(frames);
-  for (Eigen::Index t = 0; t < frames; ++t) {
-    const Shape& shape = landmarks.frames[static_cast<std::size_t>(t)];
-    if (shape.rows() <= std::max(upper, lower))
-      throw std::runtime_error("landmarks of " + std::to_string(shape.rows()) +
-                               " points have no inner lips at points " + std::to_string(upper) + " and " +
-                               std::to_string(lower));
-    opening[t] = (shape.row(lower) - shape.row(upper)).norm();
-  }
+  const Eigen::VectorXd opening = point_distance(landmarks, upper, lower);
+  const auto frames = opening.size();
   const Eigen::VectorXd sound = envelope(audio, landmarks.rate, frames);
   Scores best;
   for (int lag = -max_lag; lag <= max_lag; ++lag) {

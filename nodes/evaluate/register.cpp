@@ -2,7 +2,9 @@
 
 #include "nodes/evaluate/compare.h"
 #include "nodes/evaluate/mouth_lag.h"
+#include "nodes/evaluate/mouth_opening.h"
 #include "nodes/evaluate/score.h"
+#include "nodes/evaluate/seams.h"
 #include "nodes/evaluate/sequences.h"
 #include "nodes/evaluate/summary.h"
 
@@ -11,7 +13,9 @@ namespace talkgraph {
 void register_evaluate(Registry& registry) {
   registry.add<Compare>();
   registry.add<MouthLag>();
+  registry.add<MouthOpening>();
   registry.add<Score>();
+  registry.add<Seams>();
   registry.add<SequenceTable>();
   registry.add<Summary>();
 }

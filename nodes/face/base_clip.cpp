@@ -14,7 +14,10 @@ BaseClip MakeBaseClip::operator()(const Video& video, const FaceTrack& track) co
 }
 
 void describe(Description<MakeBaseClip>& d) {
-  d.type("face.base_clip").version(1).summary("a tracked clip as the base to draw a face upon").source("spec §2");
+  d.type("face.base_clip")
+      .version(1)
+      .summary("a tracked clip as the base to draw a face upon")
+      .source("docs/method.md §2");
   d.input("video").input("track").output("base");
 }
 

@@ -33,7 +33,10 @@ BaseClip ChooseBase::operator()(const Collected<Video>& videos, const Collected<
 }
 
 void describe(Description<ChooseBase>& d) {
-  d.type("face.choose_base").version(1).summary("picks the clip to draw synthesised faces upon").source("spec §2");
+  d.type("face.choose_base")
+      .version(1)
+      .summary("picks the clip to draw synthesised faces upon")
+      .source("docs/method.md §2");
   d.input("videos").input("tracks").output("base");
   d.param("key", &ChooseBase::key).doc("of the clip; empty: the best tracked one");
 }

@@ -20,7 +20,7 @@ inline constexpr EnumNames<FacePart, 2> enum_names<FacePart>{{{FacePart::lower, 
 /// A base shorter than the track is run back and forth; only its longest
 /// stretch without lost frames is used. The video has the track's rate and
 /// length and renders when read. Throws std::runtime_error if the base has no
-/// good frame or the track was made with another model. Spec §2.
+/// good frame or the track was made with another model. docs/method.md §2.
 struct CompositeFace {
   FacePart part = FacePart::lower;
   double blend_from = 0.40;  ///< of the face's height from the top: above this the base stays (part "lower")

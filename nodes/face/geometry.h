@@ -25,7 +25,7 @@ struct Aligned {
   std::vector<Shape> shapes;  ///< each carried onto the mean
   std::vector<Pose> poses;    ///< from the mean's frame to each given shape
 };
-/// Generalised Procrustes alignment (spec §2). The mean keeps the average
+/// Generalised Procrustes alignment (docs/method.md §2). The mean keeps the average
 /// orientation of the shapes; `width` is its extent in x.
 Aligned procrustes(const std::vector<Shape>& shapes, double width);
 

@@ -7,7 +7,7 @@ LandmarkTrack FaceLandmarks::operator()(const FaceTrack& track) const {
 }
 
 void describe(Description<FaceLandmarks>& d) {
-  d.type("face.landmarks").version(1).summary("the landmarks that tracking found").source("spec §2");
+  d.type("face.landmarks").version(1).summary("the landmarks that tracking found").source("docs/method.md §2");
   d.input("track").output("landmarks", "picture coordinates");
 }
 

@@ -13,7 +13,7 @@ struct Pca {
 };
 
 /// Keeps the fewest modes that hold the share `retain` of the variance. With
-/// D > N the N × N problem is solved: p_i = Z v_i / sqrt(N λ_i) (spec §2). Equal
+/// D > N the N × N problem is solved: p_i = Z v_i / sqrt(N λ_i) (docs/method.md §2). Equal
 /// columns give no modes.
 Pca pca(const Eigen::MatrixXd& columns, double retain);
 

@@ -91,7 +91,7 @@ Prototypes ChoosePrototypes::operator()(const Collected<Video>& videos, const Co
 
 void describe(Description<ChoosePrototypes>& d) {
   d.type("face.prototypes").version(1).summary("chooses frames of every phone at random to build a face model from");
-  d.source("Thesis §3.4; spec §2").stored();
+  d.source("Thesis §3.4; docs/method.md §2").stored();
   d.input("videos", "clips").input("landmarks", "of the clips").input("labels", "phone of every frame");
   d.output("prototypes");
   d.param("per_phone", &ChoosePrototypes::per_phone)

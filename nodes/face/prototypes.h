@@ -14,7 +14,7 @@ namespace talkgraph {
 /// of them. Clips are matched by key; a clip that lacks pictures, landmarks or
 /// labels is passed over, as are damaged frames and frames with a landmark
 /// missing (NaN) or outside the picture. Only clips with a chosen frame are
-/// decoded. Throws std::runtime_error if no frame can be used. Spec §2.
+/// decoded. Throws std::runtime_error if no frame can be used. docs/method.md §2.
 struct ChoosePrototypes {
   int per_phone = 4;
 

@@ -87,7 +87,7 @@ Video RenderFace::operator()(const AppearanceModel& model, const Track& paramete
 
 void describe(Description<RenderFace>& d) {
   d.type("face.render").version(1).summary("the face of appearance parameters alone, on a plain background");
-  d.source("Thesis Eqn 3.18; spec §2");
+  d.source("Thesis Eqn 3.18; docs/method.md §2");
   d.input("model").input("parameters").output("video");
   d.param("zoom", &RenderFace::zoom).positive().doc("pixels per pixel of the mean shape");
   d.param("background", &RenderFace::background).within(0, 255).doc("grey level around the face");

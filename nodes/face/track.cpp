@@ -147,7 +147,7 @@ FaceTrack TrackFace::operator()(const AppearanceModel& model, const Video& video
 
 void describe(Description<TrackFace>& d) {
   d.type("face.track").version(1).summary("follows the face through a clip with the model alone");
-  d.source("Thesis §3.1.4, Algorithm 1; spec §2").stored();
+  d.source("Thesis §3.1.4, Algorithm 1; docs/method.md §2").stored();
   d.input("model").input("video").output("track");
   d.param("lost_above", &TrackFace::lost_above)
       .positive()

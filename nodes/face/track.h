@@ -14,7 +14,7 @@ namespace talkgraph {
 /// anew, and if that fails it is lost. Lost and damaged frames get parameters
 /// and pose interpolated between their good neighbours (copied at the ends);
 /// with no good frame at all, the mean face in the middle of the picture.
-/// Throws std::runtime_error on a clip without frames. Spec §2, Algorithm 1.
+/// Throws std::runtime_error on a clip without frames. docs/method.md §2, Algorithm 1.
 struct TrackFace {
   double lost_above = 6;     ///< residual at the prototypes' average light, in multiples of the model's own residual
                              ///< over its prototypes (taken as at least 4/3 grey levels)

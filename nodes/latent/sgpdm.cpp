@@ -200,8 +200,8 @@ Sgpdm TrainSgpdm::operator()(const StateData& data, Context& context) const {
 
 void describe(Description<TrainSgpdm>& d) {
   d.type("latent.sgpdm").version(1).stored();
-  d.summary("Trains a shared Gaussian process dynamical model of one state's audio and visual windows.");
-  d.source("Thesis §4.3.3-4.3.4, §5.1.2, Eqns 4.65-4.70, with the corrections of the method's digest.");
+  d.summary("trains the shared Gaussian process dynamical model of one state's audio and visual windows");
+  d.source("Thesis §4.3.3-4.3.4, §5.1.2, Eqns 4.65-4.70, corrected as in docs/method.md §4");
   d.input("windows", "training windows of one state").output("model");
   d.param("latent_dimension", &TrainSgpdm::latent_dimension)
       .at_least(1)

@@ -32,7 +32,7 @@ inline constexpr EnumNames<LatentStart, 2> enum_names<LatentStart>{
 
 /// Trains the SGPDM of one state: maximises Eqn 4.69 over latent points,
 /// inducing points and kernel parameters by scaled conjugate gradients, from
-/// PCCA or averaged PPCA (spec §4). Windows of one frame only give an SGPLVM.
+/// PCCA or averaged PPCA (docs/method.md §4). Windows of one frame only give an SGPLVM.
 ///
 /// Observation kernels are RBF + bias + white, that of the dynamics RBF +
 /// linear + white. A process of at most `inducing` frames is exact whatever the

@@ -62,8 +62,8 @@ const Sgpdm& state_for(const Ssgpdm& model, const std::string& label, const Eige
 
 void describe(Description<AssembleSsgpdm>& d) {
   d.type("mapping.ssgpdm").version(1);
-  d.summary("Puts the trained SGPDMs of all states together into one switching model.");
-  d.source("Thesis §5.1.");
+  d.summary("puts the trained SGPDMs of all states together into one switching model");
+  d.source("Thesis §5.1");
   d.input("states", "one trained SGPDM a state").output("model");
 }
 

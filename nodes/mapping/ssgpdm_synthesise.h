@@ -26,7 +26,7 @@ inline constexpr EnumNames<LatentInitial, 2> enum_names<LatentInitial>{
     {{LatentInitial::frame, "frame"}, {LatentInitial::window, "window"}}};
 
 /// Visual features of new speech by a switching SGPDM, segment after segment
-/// (spec §5, Algorithms 7 and 8): start values from the state's nearest
+/// (docs/method.md §5, Algorithms 7 and 8): start values from the state's nearest
 /// training audio, optimisation of the latent points, mean of the visual process
 /// (Eqn 4.76). A segment whose label has no state is answered by state_for(). A
 /// segment may be shorter or longer than the state's training windows.

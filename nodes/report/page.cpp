@@ -42,12 +42,15 @@ bool is_deviation(const Table& table, std::size_t c) {
          std::find(table.columns.begin(), table.columns.end(), name.substr(0, name.size() - 4)) != table.columns.end();
 }
 
+/// What rounding left of a zero is shown as one; the files keep every digit.
+double shown(double value) { return std::abs(value) < 1e-12 ? 0 : value; }
+
 std::string cell(const Table& table, std::size_t row, std::size_t c) {
-  const double value = table.cells[row][c];
+  const double value = shown(table.cells[row][c]);
   if (std::isnan(value)) return "<td>–</td>";
   const auto deviation = deviation_of(table, c);
   if (deviation < 0) return "<td>" + number(value) + "</td>";
-  const double spread = table.cells[row][static_cast<std::size_t>(deviation)];
+  const double spread = shown(table.cells[row][static_cast<std::size_t>(deviation)]);
   if (std::isnan(spread)) return "<td>" + number(value) + "</td>";
   return fmt::format("<td>{:.3g} ± {:.2g}</td>", value, spread);
 }

@@ -8,7 +8,7 @@ namespace talkgraph {
 /// Zero-phase low-pass: a Butterworth filter of order 2 run forwards and
 /// backwards, so the gain at the cutoff is ½ and there is no delay. Ends are
 /// continued by odd reflection. A cutoff at or above half the rate does
-/// nothing, and neither does a track of fewer than three frames. Spec §5.
+/// nothing, and neither does a track of fewer than three frames. docs/method.md §5.
 struct Lowpass {
   double cutoff = 8;  ///< Hz
 

@@ -176,7 +176,7 @@ Stream<Recording> BuiltinSpeaker::operator()() const {
 }
 
 void describe(Description<BuiltinSpeaker>& d) {
-  d.type("speaker.builtin").version(1).summary("A synthetic speaker: sound, pictures, phones, words and landmarks.");
+  d.type("speaker.builtin").version(1).summary("a synthetic speaker: sound, pictures, phones, words and landmarks");
   d.output("recording");
   d.param("sentences", &BuiltinSpeaker::sentences)
       .within(1, static_cast<double>(speaker_sentence_count()))

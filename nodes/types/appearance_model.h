@@ -39,7 +39,7 @@ struct FitLevel {
 };
 void fields(Archive& ar, FitLevel& f);
 
-/// Active appearance model of a face (spec §2). Model frame: the mean shape is
+/// Active appearance model of a face (docs/method.md §2). Model frame: the mean shape is
 /// centred on the origin; one unit is one pixel of the finest raster. A texture
 /// is normalised to mean 0 and norm 1 over its 3P values (Eqn 3.13).
 struct AppearanceModel {

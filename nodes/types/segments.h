@@ -10,13 +10,13 @@ namespace talkgraph {
 
 /// A stretch of frames that one state speaks for.
 struct Segment {
-  std::string label;  ///< of the state: phones joined by '-', oldest first ("k-ae-t"), or one phone
+  std::string label;       ///< of the state: phones joined by '-', oldest first ("k-ae-t"), or one phone
   std::int64_t start = 0;  ///< first frame
   std::int64_t length = 0;
 };
 void fields(Archive& ar, Segment& s);
 
-/// Non-overlapping segments in time order that cover every frame (spec §5).
+/// Non-overlapping segments in time order that cover every frame (docs/method.md §5).
 struct SegmentTrack {
   std::vector<Segment> segments;
   std::int64_t frames = 0;

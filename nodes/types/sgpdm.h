@@ -50,7 +50,7 @@ struct GaussianProcess {
 };
 void fields(Archive& ar, GaussianProcess& g);
 
-/// A shared Gaussian process dynamical model of one state (spec §4): audio and
+/// A shared Gaussian process dynamical model of one state (docs/method.md §4): audio and
 /// visual features are two processes of one latent trajectory. Without
 /// dynamics, for windows of one frame, it is an SGPLVM.
 struct Sgpdm {

@@ -8,7 +8,7 @@
 
 namespace talkgraph {
 
-/// A switching SGPDM (spec §5): one SGPDM a state. Labels are phones joined by
+/// A switching SGPDM (docs/method.md §5): one SGPDM a state. Labels are phones joined by
 /// '-', oldest first.
 struct Ssgpdm {
   std::map<std::string, Sgpdm> states;

@@ -9,7 +9,7 @@
 namespace talkgraph {
 
 /// A variable length Markov model of phones as a probabilistic automaton
-/// (spec §5, thesis §5.2.1). Its symbols are the phones of video frames, or of
+/// (docs/method.md §5, thesis §5.2.1). Its symbols are the phones of video frames, or of
 /// runs of equal frames. Phones are written as indices into `alphabet`; labels
 /// as phones joined by '-', oldest first.
 struct Vlmm {

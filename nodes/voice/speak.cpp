@@ -5,7 +5,7 @@ namespace talkgraph {
 Utterance Speak::operator()(const Transcript& transcript) const { return speak(transcript.text, voice); }
 
 void describe(Description<Speak>& d) {
-  d.type("voice.speak").version(1).summary("Speaks a text through espeak-ng, with the times of its phones and words.");
+  d.type("voice.speak").version(1).summary("speaks a text through espeak-ng, with the times of its phones and words");
   d.input("transcript", "English text");
   d.output("audio", &Utterance::audio, "speech at 22050 Hz");
   d.output("phones", &Utterance::phones, "CMU phones, sil in pauses");

@@ -71,7 +71,13 @@ TEST_F(RunFolderTest, NamesItselfAfterGraphAndTime) {
   const auto before = fs::current_path();
   fs::current_path(home_);
   const RunFolder one(b_.graph), two(b_.graph);
+  const std::string started = Json::parse(read(one.path() / "run.json"))["started"];
   fs::current_path(before);
+  const auto digits = [](std::string text) {
+    std::erase_if(text, [](char c) { return c < '0' || c > '9'; });
+    return text;
+  };
+  EXPECT_EQ(digits(one.path().string()), digits(started));
   EXPECT_THAT(one.path().string(), testing::MatchesRegex("runs/lips-[0-9]+T[0-9]+Z"));
   EXPECT_NE(one.path(), two.path());
 }

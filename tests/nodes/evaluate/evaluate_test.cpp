@@ -5,7 +5,9 @@
 #include "graph/random.h"
 #include "nodes/evaluate/compare.h"
 #include "nodes/evaluate/mouth_lag.h"
+#include "nodes/evaluate/mouth_opening.h"
 #include "nodes/evaluate/score.h"
+#include "nodes/evaluate/seams.h"
 #include "nodes/evaluate/sequences.h"
 #include "nodes/evaluate/summary.h"
 
@@ -145,6 +147,60 @@ TEST(MouthLag, SaysNothingOfAStillMouthAndRefusesOtherSchemes) {
   EXPECT_FALSE(MouthLag{}(still, audio));
   still.frames.assign(25, Shape::Zero(20, 2));
   EXPECT_THROW(MouthLag{}(still, audio), std::runtime_error);
+}
+
+/// A mouth 4 wide whose inner lips are gaps[t] apart.
+LandmarkTrack mouth(const std::vector<double>& gaps) {
+  LandmarkTrack landmarks;
+  for (const double gap : gaps) {
+    Shape shape = Shape::Zero(68, 2);
+    shape(66, 1) = gap;
+    shape(54, 0) = 4;
+    landmarks.frames.push_back(shape);
+  }
+  return landmarks;
+}
+
+TEST(MouthOpening, TellsClosedFromOpenPhones) {
+  const FrameLabels labels{{"sil", "sil", "b", "b", "aa", "aa", "m", "s"}, Rational(25)};
+  const auto scores = *MouthOpening{}(mouth({0.2, 0.6, 0.8, 0.4, 2, 3, 0, 1}), labels);
+  EXPECT_NEAR(scores.values.at("pause"), 0.1, 1e-12);
+  EXPECT_NEAR(scores.values.at("closed"), 0.05, 1e-12) << "0.4 of b, 0 of m";
+  EXPECT_NEAR(scores.values.at("open"), 0.75, 1e-12);
+  const auto other = *MouthOpening{.closed = {"s"}, .open = {}}(mouth({1, 2}), {{"s", "s"}, Rational(25)});
+  EXPECT_EQ(other.values, (std::map<std::string, double>{{"closed", 0.25}}));
+}
+
+TEST(MouthOpening, SaysNothingWithoutItsPhonesAndRefusesWhatDoesNotFit) {
+  EXPECT_FALSE(MouthOpening{}({}, {}));
+  EXPECT_FALSE(MouthOpening{}(mouth({1}), {{"s"}, Rational(25)}));
+  EXPECT_TRUE(MouthOpening{}(mouth({1, 1, 1}), {{"b"}, Rational(25)}));
+  EXPECT_THROW(MouthOpening{}(mouth({1, 1, 1, 1}), {{"b"}, Rational(25)}), std::runtime_error);
+  LandmarkTrack other;
+  other.frames = {Shape::Zero(20, 2)};
+  EXPECT_THROW(MouthOpening{}(other, {{"b"}, Rational(25)}), std::runtime_error);
+  other.frames = {Shape::Zero(68, 2)};
+  EXPECT_THROW(MouthOpening{}(other, {{"b"}, Rational(25)}), std::runtime_error);
+}
+
+TEST(Seams, ComparesStepsAtSeamsWithOthers) {
+  const SegmentTrack segments{{{"a", 0, 3}, {"b", 3, 2}}, 5, Rational(25)};
+  Track track;
+  track.values = Eigen::VectorXd::LinSpaced(5, 0, 4);
+  EXPECT_NEAR(Seams{}(track, segments)->values.at("step"), 1, 1e-12);
+  track.values.bottomRows(2).array() += 5;
+  EXPECT_NEAR(Seams{}(track, segments)->values.at("step"), 6, 1e-12);
+}
+
+TEST(Seams, SaysNothingWithoutSeamsAndRefusesOtherLengths) {
+  Track track;
+  track.values = Eigen::VectorXd::LinSpaced(5, 0, 4);
+  EXPECT_FALSE(Seams{}(track, {{{"a", 0, 5}}, 5, Rational(25)}));
+  EXPECT_FALSE(Seams{}({}, {}));
+  EXPECT_TRUE(Seams{}(track, {{{"a", 0, 3}, {"b", 3, 4}}, 7, Rational(25)}));
+  EXPECT_THROW(Seams{}(track, {{{"a", 0, 8}}, 8, Rational(25)}), std::runtime_error);
+  track.values.setConstant(1);
+  EXPECT_FALSE(Seams{}(track, {{{"a", 0, 3}, {"b", 3, 2}}, 5, Rational(25)}));
 }
 
 }  // namespace

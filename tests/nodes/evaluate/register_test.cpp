@@ -8,8 +8,8 @@ namespace {
 TEST(RegisterEvaluate, DescribesEveryNode) {
   Registry registry;
   register_evaluate(registry);
-  for (const char* name :
-       {"evaluate.score", "evaluate.summary", "evaluate.sequences", "evaluate.compare", "evaluate.mouth_lag"})
+  for (const char* name : {"evaluate.score", "evaluate.summary", "evaluate.sequences", "evaluate.compare",
+                           "evaluate.mouth_lag", "evaluate.mouth_opening", "evaluate.seams"})
     EXPECT_TRUE(registry.find(name)) << name;
 }
 

@@ -1,0 +1,68 @@
+#include "nodes/evaluate/mouth_opening.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "nodes/evaluate/lips.h"
+
+namespace talkgraph {
+namespace {
+
+class Mean {
+ public:
+  void add(double value, double weight = 1) {
+    sum_ += weight * value;
+    count_ += weight;
+  }
+  void store(Scores& scores, const char* name) const {
+    if (count_ > 0) scores.values[name] = sum_ / count_;
+  }
+
+ private:
+  double sum_ = 0, count_ = 0;
+};
+
+}  // namespace
+
+std::optional<Scores> MouthOpening::operator()(const LandmarkTrack& landmarks, const FrameLabels& labels) const {
+  const auto length = static_cast<std::ptrdiff_t>(labels.labels.size());
+  if (std::abs(length - static_cast<std::ptrdiff_t>(landmarks.frames.size())) > 2)
+    throw std::runtime_error("landmarks of " + std::to_string(landmarks.frames.size()) + " frames, labels of " +
+                             std::to_string(length));
+  const auto frames = std::min<Eigen::Index>(length, static_cast<Eigen::Index>(landmarks.frames.size()));
+  if (frames == 0) return {};
+  const double width = point_distance(landmarks, left, right).mean();
+  if (!(width > 0)) throw std::runtime_error("the corners of the mouth are one point in every frame");
+  const Eigen::VectorXd gap = point_distance(landmarks, upper, lower) / width;
+  const auto among = [](const std::vector<std::string>& phones, const std::string& phone) {
+    return std::find(phones.begin(), phones.end(), phone) != phones.end();
+  };
+  Mean closed_gap, open_gap, pause_gap;
+  for (Eigen::Index from = 0, to = 0; from < frames; from = to) {
+    const auto& phone = labels.labels[static_cast<std::size_t>(from)];
+    while (to < frames && labels.labels[static_cast<std::size_t>(to)] == phone) ++to;
+    const auto run = gap.segment(from, to - from);
+    if (among(closed, phone)) closed_gap.add(run.minCoeff());
+    if (among(open, phone)) open_gap.add(run.maxCoeff());
+    if (phone == "sil") pause_gap.add(run.mean(), static_cast<double>(run.size()));
+  }
+  Scores scores;
+  closed_gap.store(scores, "closed");
+  open_gap.store(scores, "open");
+  pause_gap.store(scores, "pause");
+  if (scores.values.empty()) return {};
+  return scores;
+}
+
+void describe(Description<MouthOpening>& d) {
+  d.type("evaluate.mouth_opening").summary("how far the lips part on closed phones, open phones and in pauses");
+  d.input("landmarks").input("labels").output("scores");
+  d.param("closed", &MouthOpening::closed).doc("phones on which the lips meet");
+  d.param("open", &MouthOpening::open).doc("phones on which the mouth opens");
+  d.param("upper", &MouthOpening::upper).at_least(0).doc("point in the middle of the inner upper lip");
+  d.param("lower", &MouthOpening::lower).at_least(0).doc("point in the middle of the inner lower lip");
+  d.param("left", &MouthOpening::left).at_least(0).doc("corner of the mouth");
+  d.param("right", &MouthOpening::right).at_least(0).doc("the other corner");
+}
+
+}  // namespace talkgraph

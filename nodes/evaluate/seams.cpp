@@ -1,0 +1,28 @@
+#include "nodes/evaluate/seams.h"
+
+#include <stdexcept>
+
+namespace talkgraph {
+
+std::optional<Scores> Seams::operator()(const Track& track, const SegmentTrack& segments) const {
+  if (std::abs(track.values.rows() - static_cast<Eigen::Index>(segments.frames)) > 2)
+    throw std::runtime_error("a track of " + std::to_string(track.values.rows()) + " frames, segments of " +
+                             std::to_string(segments.frames));
+  double at_seams = 0, inside = 0;
+  int seams = 0, steps = 0;
+  for (const auto& s : segments.segments)
+    for (auto t = std::max<std::int64_t>(s.start, 1); t < s.start + s.length && t < track.values.rows(); ++t) {
+      const double step = (track.values.row(t) - track.values.row(t - 1)).norm();
+      (t == s.start ? at_seams : inside) += step;
+      ++(t == s.start ? seams : steps);
+    }
+  if (seams == 0 || steps == 0 || inside == 0) return {};
+  return Scores{{{"step", (at_seams / seams) / (inside / steps)}}};
+}
+
+void describe(Description<Seams>& d) {
+  d.type("evaluate.seams").summary("whether a track jumps where its segments meet");
+  d.input("track").input("segments").output("scores");
+}
+
+}  // namespace talkgraph
