@@ -3,12 +3,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <stdexcept>
-#include <system_error>
+
+#include "graph/output_file.h"
 
 namespace talkgraph {
 namespace {
@@ -32,22 +30,6 @@ fs::path unused_folder(const Graph& graph, std::chrono::system_clock::time_point
 
 }  // namespace
 
-void write_file_atomically(const fs::path& path, std::string_view text) {
-  const fs::path temporary = path.string() + ".part-" + std::to_string(getpid());
-  const auto fail = [&] {
-    const std::string why = std::strerror(errno);
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw std::runtime_error(fmt::format("{} cannot be written: {}", path.string(), why));
-  };
-  errno = 0;
-  std::ofstream file(temporary, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) fail();
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail();
-}
-
 std::size_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -58,8 +40,8 @@ RunFolder::RunFolder(const Graph& graph, fs::path path)
     : graph_(graph), path_(path.empty() ? unused_folder(graph, started_) : std::move(path)) {
   try {
     fs::create_directories(path_);
-    write_file_atomically(path_ / "graph.resolved.json", graph.resolved.dump(2) + "\n");
-    write_file_atomically(path_ / "run.json", header("running").dump(2) + "\n");
+    write_file(path_ / "graph.resolved.json", graph.resolved.dump(2) + "\n");
+    write_file(path_ / "run.json", header("running").dump(2) + "\n");
     log_.open(path_ / "log.txt", std::ios::app);
     if (!log_) throw std::runtime_error(fmt::format("{} cannot be written", (path_ / "log.txt").string()));
   } catch (const std::exception& e) {
@@ -114,7 +96,7 @@ void RunFolder::ended(const RunReport& report) {
                              {"seconds", stats.wall},
                              {"cpu_seconds", stats.cpu}});
   }
-  write_file_atomically(path_ / "run.json", json.dump(2) + "\n");
+  write_file(path_ / "run.json", json.dump(2) + "\n");
   log(report.error.empty() ? status : status + ": " + report.error);
 }
 

@@ -11,10 +11,6 @@
 
 namespace talkgraph {
 
-/// Writes a file by way of a temporary one beside it, so that a half-written
-/// one is never seen. Throws std::runtime_error naming the file.
-void write_file_atomically(const std::filesystem::path& path, std::string_view text);
-
 /// Most memory this process has held so far, bytes.
 std::size_t peak_memory();
 

@@ -24,7 +24,9 @@ Artifact FaceModes::operator()(const AppearanceModel& model, Context& context) c
   }
   cv::Mat sheet;
   cv::vconcat(lines, sheet);
-  return write_png(context, "", name, "modes of the face model", sheet);
+  const Artifact artifact{name + ".png", "modes of the face model"};
+  write_png(context.folder / artifact.path, sheet);
+  return artifact;
 }
 
 void describe(Description<FaceModes>& d) {

@@ -5,6 +5,9 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "graph/output_file.h"
+#include "nodes/types/item_file.h"
+
 namespace talkgraph {
 namespace {
 
@@ -22,21 +25,17 @@ cv::Mat tile(const cv::Mat& frame, int width, const std::string& text) {
 
 }  // namespace
 
-Artifact write_png(const Context& context, const std::string& folder, const std::string& name, const std::string& title,
-                   const cv::Mat& picture) {
-  const auto relative = std::filesystem::path(folder) / (name + ".png");
-  const auto path = context.folder / relative;
-  std::error_code ignored;
-  std::filesystem::create_directories(path.parent_path(), ignored);
+void write_png(const std::filesystem::path& path, const cv::Mat& picture) {
+  OutputFile file(path);
   bool written = false;
   try {
-    written = cv::imwrite(path.string(), picture);
+    written = cv::imwrite(file.part(), picture);
   } catch (const cv::Exception&) {
   }
   if (!written)
     throw std::runtime_error(path.string() +
                              ": the picture cannot be written; is there room, and may one write there?");
-  return {relative.string(), title};
+  file.finish();
 }
 
 Artifact FrameStrip::operator()(const Video& video, const FrameLabels* labels, Context& context) const {
@@ -57,8 +56,10 @@ Artifact FrameStrip::operator()(const Video& video, const FrameLabels* labels, C
   for (int i = 0; i < static_cast<int>(tiles.size()); ++i)
     tiles[static_cast<std::size_t>(i)].copyTo(
         sheet(cv::Rect({i % across * size.width, i / across * size.height}, size)));
-  const auto name = context.item.empty() ? "strip" : context.item;
-  return write_png(context, folder, name, "frames of " + video.source->name(), sheet);
+  Artifact artifact = item_file(context, folder, ".png", "strip");
+  write_png(context.folder / artifact.path, sheet);
+  artifact.title = "frames of " + video.source->name();
+  return artifact;
 }
 
 void describe(Description<FrameStrip>& d) {

@@ -21,8 +21,7 @@ struct FrameStrip {
 };
 void describe(Description<FrameStrip>& d);
 
-/// Writes a PNG below the run folder, as folder/name.png.
-Artifact write_png(const Context& context, const std::string& folder, const std::string& name, const std::string& title,
-                   const cv::Mat& picture);
+/// Writes a picture as a PNG file. Throws std::runtime_error that names it.
+void write_png(const std::filesystem::path& path, const cv::Mat& picture);
 
 }  // namespace talkgraph

@@ -7,9 +7,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "graph/output_file.h"
 #include "nodes/media/audio_file.h"
 #include "nodes/media/ffmpeg.h"
-#include "nodes/media/output_file.h"
+#include "nodes/types/item_file.h"
 
 namespace talkgraph {
 namespace {
@@ -39,9 +40,12 @@ Artifact Encode::operator()(const Video& video, const Audio* audio, Context& con
   const double seconds = static_cast<double>(frames) / video.source->rate().value();
   std::optional<Audio> sound;
   if (audio) sound = fitted(*audio, seconds, format);
-  OutputFile file(context, folder, prefix, suffix, format == ClipFormat::mp4 ? ".mp4" : ".webm", "clip");
+  const char* const ending = format == ClipFormat::mp4 ? ".mp4" : ".webm";
+  const Artifact artifact = item_file(context, folder, ending, "clip", prefix, suffix);
+  OutputFile file(context.folder / artifact.path);
   ffmpeg_encode(file.part(), video, sound ? &*sound : nullptr, {format, crf}, context);
-  return file.finish();
+  file.finish();
+  return artifact;
 }
 
 void describe(Description<Encode>& d) {

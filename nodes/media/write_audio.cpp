@@ -1,13 +1,16 @@
 #include "nodes/media/write_audio.h"
 
-#include "nodes/media/output_file.h"
+#include "graph/output_file.h"
+#include "nodes/types/item_file.h"
 
 namespace talkgraph {
 
 Artifact WriteAudio::operator()(const Audio& audio, Context& context) const {
-  OutputFile file(context, folder, prefix, suffix, ".wav", "sound");
+  const Artifact artifact = item_file(context, folder, ".wav", "sound", prefix, suffix);
+  OutputFile file(context.folder / artifact.path);
   write_audio(file.part(), audio, format);
-  return file.finish();
+  file.finish();
+  return artifact;
 }
 
 void describe(Description<WriteAudio>& d) {

@@ -3,20 +3,21 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "graph/output_file.h"
+
 namespace talkgraph {
 
 Artifact SaveModel::operator()(const AppearanceModel& face, const BaseClip& base, const Vlmm& contexts,
                                const Ssgpdm& states, const Track& mean, Context& context) const {
   TalkingFace all{face, base, contexts, states, mean, speak.json};
   std::string format = model_format;
-  std::filesystem::create_directories((context.folder / name).parent_path());
-  const auto path = context.folder / name, temporary = context.folder / (name + ".part");
+  OutputFile file(context.folder / name);
   {
-    const auto ar = hdf5_writer(temporary.string());
+    const auto ar = hdf5_writer(file.part());
     (*ar)("format", format);
     (*ar)("model", all);
   }
-  std::filesystem::rename(temporary, path);
+  file.finish();
   return {name, "trained model"};
 }
 

@@ -1,13 +1,16 @@
 #include "nodes/phones/write_labels.h"
 
+#include "graph/output_file.h"
 #include "nodes/phones/label_files.h"
-#include "nodes/phones/text_file.h"
+#include "nodes/types/item_file.h"
 
 namespace talkgraph {
 
 Artifact WriteLabels::operator()(const PhoneTrack& phones, const WordTrack* words, Context& context) const {
   const auto write = [&](const char* ending, const std::string& text) {
-    return write_text(context, folder, ending, "phones", text);
+    const Artifact artifact = item_file(context, folder, ending, "phones");
+    write_file(context.folder / artifact.path, text);
+    return artifact;
   };
   if (format == LabelFormat::htk) return write(".lab", htk_labels(phones.phones));
   if (format == LabelFormat::csv) return write(".csv", csv_labels(phones.phones));

@@ -4,8 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "graph/output_file.h"
 #include "nodes/phones/mouth_shapes.h"
-#include "nodes/phones/text_file.h"
+#include "nodes/types/item_file.h"
 
 namespace talkgraph {
 namespace {
@@ -37,8 +38,9 @@ std::string viseme_text(const PhoneTrack& phones, VisemeFormat format, const std
 }
 
 Artifact WriteVisemes::operator()(const PhoneTrack& phones, Context& context) const {
-  return write_text(context, folder, format == VisemeFormat::tsv ? ".tsv" : ".json", "visemes",
-                    viseme_text(phones, format, context.item));
+  const Artifact artifact = item_file(context, folder, format == VisemeFormat::tsv ? ".tsv" : ".json", "visemes");
+  write_file(context.folder / artifact.path, viseme_text(phones, format, context.item));
+  return artifact;
 }
 
 void describe(Description<WriteVisemes>& d) {

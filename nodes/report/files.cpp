@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 namespace talkgraph {
 namespace {
@@ -18,18 +16,6 @@ std::string csv_text(const std::string& text) {
 }
 
 }  // namespace
-
-void write_whole(const std::filesystem::path& file, std::string_view text) {
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  const std::filesystem::path temporary = file.string() + ".part";
-  std::ofstream out(temporary, std::ios::binary);
-  out << text;
-  out.close();
-  if (out) std::filesystem::rename(temporary, file, error);
-  if (!out || error)
-    throw std::runtime_error(file.string() + ": cannot be written; is the folder writable, is there room on the disk?");
-}
 
 std::string to_csv(const Table& table) {
   std::string out = csv_text(table.corner);

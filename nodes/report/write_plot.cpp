@@ -2,15 +2,17 @@
 
 #include <stdexcept>
 
-#include "nodes/report/files.h"
+#include "graph/output_file.h"
+#include "nodes/types/item_file.h"
 
 namespace talkgraph {
 
 Artifact WritePlot::operator()(const Plot& plot, Context& context) const {
-  const std::string& file = name.empty() ? context.item : name;
-  if (file.empty()) throw std::invalid_argument("a plot that is not an item of a stream needs the parameter \"name\"");
-  const std::string path = (std::filesystem::path(folder) / (file + ".svg")).string();
-  write_whole(context.folder / path, plot.svg);
+  if (name.empty() && context.item.empty())
+    throw std::invalid_argument("a plot that is not an item of a stream needs the parameter \"name\"");
+  const std::string path = name.empty() ? item_file(context, folder, ".svg", "").path
+                                        : (std::filesystem::path(folder) / (name + ".svg")).string();
+  write_file(context.folder / path, plot.svg);
   return {path, plot.title};
 }
 

@@ -1,12 +1,13 @@
 #include "nodes/report/write_table.h"
 
+#include "graph/output_file.h"
 #include "nodes/report/files.h"
 
 namespace talkgraph {
 
 Artifact WriteTable::operator()(const Table& table, Context& context) const {
-  write_whole(context.folder / (name + ".json"), to_json(table));
-  write_whole(context.folder / (name + ".csv"), to_csv(table));
+  write_file(context.folder / (name + ".json"), to_json(table));
+  write_file(context.folder / (name + ".csv"), to_csv(table));
   return {name + ".csv", table.title.empty() ? "table" : table.title};
 }
 

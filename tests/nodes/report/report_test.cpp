@@ -83,12 +83,12 @@ TEST_F(Report, WritesPlots) {
 }
 
 TEST_F(Report, SaysWhichFileCannotBeWritten) {
-  std::ofstream(context.folder / "file") << "x";
+  context.folder = folder.write("in_the_way", "x");
   try {
-    write_whole(context.folder / "file" / "t.csv", "x");
+    WriteTable{"t"}(table, context);
     FAIL();
   } catch (const std::runtime_error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("t.csv: cannot be written"));
+    EXPECT_THAT(e.what(), HasSubstr("in_the_way: this folder cannot be made"));
   }
 }
 

@@ -1,0 +1,50 @@
+#include "graph/output_file.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/temporary_folder.h"
+
+namespace talkgraph {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+TEST(OutputFile, IsSeenOnlyWhenItIsWhole) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.path() / "new/clip.mp4";
+  {
+    OutputFile file(path);
+    EXPECT_EQ(fs::path(file.part()).extension(), ".mp4");
+    std::ofstream(file.part()) << "half";
+    EXPECT_FALSE(fs::exists(path));
+  }
+  EXPECT_TRUE(fs::is_empty(path.parent_path())) << "what was not finished is removed";
+  OutputFile file(path);
+  std::ofstream(file.part()) << "whole";
+  file.finish();
+  EXPECT_EQ(folder.read("new/clip.mp4"), "whole");
+}
+
+TEST(WriteFile, ReplacesAFileOrLeavesItAsItIs) {
+  const test::TemporaryFolder folder;
+  write_file(folder.path() / "a.txt", "one");
+  write_file(folder.path() / "a.txt", "two");
+  EXPECT_EQ(folder.read("a.txt"), "two");
+  const auto complaint = [](const fs::path& path) {
+    try {
+      write_file(path, "x");
+    } catch (const std::runtime_error& e) {
+      return std::string(e.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_THAT(complaint("/dev/full/x"), HasSubstr("/dev/full"));
+  EXPECT_THAT(complaint("/proc/nowhere.txt"), HasSubstr("/proc/nowhere.txt: cannot be written"));
+  EXPECT_THAT(complaint(folder.path() / "a.txt" / "b.txt"), HasSubstr("a.txt: this folder cannot be made"));
+  fs::create_directory(folder.path() / "folder");
+  EXPECT_THAT(complaint(folder.path() / "folder"), HasSubstr("folder: cannot be written"));
+}
+
+}  // namespace
+}  // namespace talkgraph
