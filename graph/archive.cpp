@@ -4,6 +4,8 @@
 #include <hdf5.h>
 #include <xxhash.h>
 
+#include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -125,11 +127,20 @@ class Hdf5Writer final : public Hdf5Archive {
   }
 };
 
+/// What is wrong with a file, should it not open.
+const char* complaint(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return "is missing";
+  if (std::filesystem::file_size(path, ignored) == 0) return "is empty";
+  std::string start(8, 0);
+  std::ifstream(path, std::ios::binary).read(start.data(), 8);
+  return start == "\x89HDF\r\n\x1a\n" ? "is cut short, damaged, or being written" : "is not an HDF5 file";
+}
+
 class Hdf5Reader final : public Hdf5Archive {
  public:
   explicit Hdf5Reader(const std::string& path)
-      : Hdf5Archive(path, "is missing or not an HDF5 file",
-                    [&] { return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT); }) {}
+      : Hdf5Archive(path, complaint(path), [&] { return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT); }) {}
   bool loading() const override { return true; }
 
  protected:

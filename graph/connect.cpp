@@ -29,7 +29,12 @@ class Connector {
     if (!sort()) return {};
     for (const int i : order_) find_domain(i);
     if (!diagnostics_.ok()) return {};
-    return assemble(outputs);
+    Graph graph = assemble(outputs);
+    if (!graph.nodes.empty()) return graph;
+    diagnostics_.error(
+        draft_.root->json.place,
+        "nothing here would run: name what the graph gives in \"outputs\", or add a node that writes a file");
+    return {};
   }
 
  private:

@@ -17,13 +17,14 @@ struct Cancelled : std::runtime_error {
 
 /// What a running node may know of its surroundings; a node asks for it as a
 /// further argument `Context&` of its call operator. A default-constructed one
-/// serves in tests: it logs nothing and writes below the working directory.
+/// serves in tests: it tells nobody and writes below the working directory.
 class Context {
  public:
   std::string item;                         ///< key of the item, empty for a node that runs once
   std::filesystem::path folder = ".";       ///< the run folder: files that a node writes go below it
   std::function<void(double)> on_progress;  ///< share done, 0..1
   std::function<void(std::string_view)> on_log;
+  std::function<void(std::string_view)> on_warning;
   const std::atomic<bool>* cancel = nullptr;
 
   void progress(double share) const {
@@ -31,6 +32,10 @@ class Context {
   }
   void log(std::string_view message) const {
     if (on_log) on_log(message);
+  }
+  /// Tells the user of what may make the result worse than it looks.
+  void warn(std::string_view message) const {
+    if (on_warning) on_warning(message);
   }
   bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
   /// Long loops call this now and then.

@@ -9,6 +9,12 @@
 namespace talkgraph {
 namespace {
 
+bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
+
+int characters(std::string_view text) {
+  return static_cast<int>(std::count_if(text.begin(), text.end(), [](char c) { return !continues_character(c); }));
+}
+
 /// Finds the place of each token of a text that a JSON parser has accepted so
 /// far: nlohmann/json reports values but not where they stand.
 class TokenPlaces {
@@ -40,7 +46,9 @@ class TokenPlaces {
     // Offsets only grow, so lines are counted once over the whole text.
     for (; counted_ < offset && counted_ < source_->text.size(); ++counted_)
       if (source_->text[counted_] == '\n') ++line_, line_start_ = counted_ + 1;
-    return {source_, line_, static_cast<int>(offset - line_start_) + 1, std::max(1, static_cast<int>(length))};
+    const std::string_view text = source_->text;
+    return {source_, line_, characters(text.substr(std::min(line_start_, text.size()), offset - line_start_)) + 1,
+            std::max(1, characters(text.substr(std::min(offset, text.size()), length)))};
   }
 
  private:
@@ -116,15 +124,43 @@ class Builder final : public nlohmann::json_sax<Json> {
   std::vector<LocatedJson*> stack_;
 };
 
-std::string source_line(const Place& place) {
-  std::size_t start = 0;
+/// The characters of a place's line; what a terminal cannot show as one column is a blank.
+std::vector<std::string> source_line(const Place& place) {
+  std::size_t at = 0;
   const std::string& text = place.source->text;
   for (int line = 1; line < place.line; ++line) {
-    const auto newline = text.find('\n', start);
-    if (newline == std::string::npos) return {};
-    start = newline + 1;
+    at = text.find('\n', at);
+    if (at == std::string::npos) return {};
+    ++at;
   }
-  return text.substr(start, text.find('\n', start) - start);
+  std::vector<std::string> line;
+  for (; at < text.size() && text[at] != '\n'; ++at) {
+    if (continues_character(text[at]) && !line.empty())
+      line.back() += text[at];
+    else
+      line.push_back(std::string(1, text[at]));
+  }
+  for (auto& c : line)
+    if (Json(c).dump(-1, ' ', false, Json::error_handler_t::ignore).size() != c.size() + 2 && c != "\"" && c != "\\")
+      c.assign(1, ' ');
+  return line;
+}
+
+/// The line of a place with a caret below it, cut to what a terminal shows.
+std::string excerpt(const Place& place) {
+  constexpr std::size_t most = 120;
+  const auto line = source_line(place);
+  const std::size_t column = static_cast<std::size_t>(place.column) - 1;
+  if (line.empty() || column > line.size()) return {};
+  const std::size_t from = line.size() <= most || column < most / 2 ? 0 : column - most / 2;
+  const std::size_t to = std::min(line.size(), from + most);
+  std::string shown;
+  for (std::size_t i = from; i < to; ++i) shown += line[i];
+  const auto marks =
+      std::clamp<std::size_t>(static_cast<std::size_t>(place.length), 1, std::max<std::size_t>(1, to - column));
+  return fmt::format("{:>5} | {}{}{}\n      | {}^{}\n", place.line, from > 0 ? "..." : "", shown,
+                     to < line.size() ? "..." : "", std::string(column - from + (from > 0 ? 3 : 0), ' '),
+                     std::string(marks - 1, '~'));
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -159,14 +195,7 @@ std::string Diagnostics::str() const {
       continue;
     }
     out += fmt::format("{}:{}:{}: error: {}\n", m.place.source->name, m.place.line, m.place.column, m.text);
-    std::string line = source_line(m.place);
-    std::replace(line.begin(), line.end(), '\t', ' ');
-    const std::size_t column = static_cast<std::size_t>(m.place.column) - 1;
-    if (line.empty() || column > line.size()) continue;
-    const std::size_t marks =
-        std::clamp<std::size_t>(m.place.length, 1, std::max<std::size_t>(1, line.size() - column));
-    out += fmt::format("{:>5} | {}\n      | {}^{}\n", m.place.line, line, std::string(column, ' '),
-                       std::string(marks - 1, '~'));
+    out += excerpt(m.place);
   }
   return out;
 }
@@ -213,9 +242,9 @@ std::string_view LocatedJson::kind_name() const {
   return "";
 }
 
-LocatedJson parse_json(std::shared_ptr<const SourceText> source, Diagnostics& diagnostics) {
+std::optional<LocatedJson> parse_json(std::shared_ptr<const SourceText> source, Diagnostics& diagnostics) {
   Builder builder(source, diagnostics);
-  Json::sax_parse(source->text, &builder);
+  if (!Json::sax_parse(source->text, &builder)) return {};
   return std::move(builder.root);
 }
 

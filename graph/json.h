@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,7 +18,7 @@ struct SourceText {
   std::string text;
 };
 
-/// A stretch of a source text; line and column count from 1.
+/// A stretch of a source text; line and column count from 1, columns in characters.
 struct Place {
   std::shared_ptr<const SourceText> source;
   int line = 0;
@@ -69,8 +70,9 @@ struct LocatedJson::Member {
   LocatedJson value;
 };
 
-/// Parses a text; syntax errors and duplicate keys go to `diagnostics`.
-LocatedJson parse_json(std::shared_ptr<const SourceText> source, Diagnostics& diagnostics);
+/// Parses a text; syntax errors and duplicate keys go to `diagnostics`. Nothing
+/// is given for what is not JSON.
+std::optional<LocatedJson> parse_json(std::shared_ptr<const SourceText> source, Diagnostics& diagnostics);
 
 /// Gives every value of `json` the same place.
 LocatedJson located(const Json& json, const Place& place);

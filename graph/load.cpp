@@ -220,8 +220,9 @@ class Loader {
       if (!text) continue;
       Loader loader(registry_, diagnostics_);
       loader.open_stack_ = open_stack_;
-      LocatedJson json = parse_json(text, diagnostics_);
-      loader.open_root(std::move(json), inner ? &inner->value : nullptr);
+      auto json = parse_json(text, diagnostics_);
+      if (!json) continue;
+      loader.open_root(*std::move(json), inner ? &inner->value : nullptr);
       if (const auto graph = connect(loader.draft, registry_, diagnostics_)) {
         LocatedJson resolved;
         resolved.kind = Kind::text;
@@ -240,11 +241,13 @@ class Loader {
     if (!text) return;
     if (std::find(open_stack_.begin(), open_stack_.end(), text->name) != open_stack_.end())
       return diagnostics_.error(file.place, fmt::format("{}: the graph {} contains itself", subject, text->name));
+    auto json = parse_json(text, diagnostics_);
+    if (!json) return;
     entry.graph = std::make_unique<Scope>();
     Scope& inner = *entry.graph;
     inner.prefix = scope.prefix + member.key + "/";
     inner.parent = &scope;
-    inner.json = parse_json(text, diagnostics_);
+    inner.json = *std::move(json);
     const auto* in = entry.json.find("in");
     inner.in = in ? &in->value : nullptr;
     const auto* params = entry.json.find("params");
@@ -414,11 +417,11 @@ std::optional<DeclaredInput> declared_input(const LocatedJson& json, const Regis
 std::optional<Graph> load_graph_text(const std::string& name, const std::string& text, const Registry& registry,
                                      Diagnostics& diagnostics, const LoadOptions& options) {
   const auto source = std::make_shared<SourceText>(SourceText{name, text});
-  LocatedJson json = parse_json(source, diagnostics);
-  if (!diagnostics.ok() && !json.is(LocatedJson::Kind::object)) return {};
-  for (const auto& set : options.sets) detail::apply_set(json, set, diagnostics);
+  auto json = parse_json(source, diagnostics);
+  if (!json) return {};
+  for (const auto& set : options.sets) detail::apply_set(*json, set, diagnostics);
   detail::Loader loader(registry, diagnostics);
-  loader.open_root(std::move(json));
+  loader.open_root(*std::move(json));
   auto graph = detail::connect(loader.draft, registry, diagnostics);
   if (graph) graph->name = name;
   return graph;

@@ -113,7 +113,8 @@ class Collected {
 };
 
 /// A keyed stream produced on demand: each call of next gives the next item
-/// or nothing at the end. Keys are unique. `size`, where known, is for progress.
+/// or nothing at the end. Keys are unique. A call after one that threw goes on
+/// with the item behind the one that could not be made. `size`, where known, is for progress.
 template <class T>
 class Stream {
  public:

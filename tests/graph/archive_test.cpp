@@ -90,10 +90,23 @@ TEST_F(ArchiveFile, RestoresEveryKindOfMember) {
 }
 
 TEST_F(ArchiveFile, SaysWhatIsWrong) {
-  EXPECT_THROW(hdf5_reader(path), std::runtime_error);
-  std::ofstream(path) << "not a model";
-  EXPECT_THROW(hdf5_reader(path), std::runtime_error);
+  const auto complaint = [&] {
+    try {
+      hdf5_reader(path);
+    } catch (const std::runtime_error& e) {
+      return std::string(e.what()).substr(path.size());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(complaint(), ": is missing");
+  folder.write("archive.h5", "");
+  EXPECT_EQ(complaint(), ": is empty");
+  folder.write("archive.h5", "not a model");
+  EXPECT_EQ(complaint(), ": is not an HDF5 file");
   Part p;
+  (*hdf5_writer(path))("part", p);
+  folder.write("archive.h5", folder.read("archive.h5").substr(0, 600));
+  EXPECT_EQ(complaint(), ": is cut short, damaged, or being written");
   (*hdf5_writer(path))("part", p);
   Whole w;
   try {

@@ -73,7 +73,7 @@ void describe(Description<Count>& d) {
 }
 
 LocatedJson json(const std::string& text, Diagnostics& diagnostics) {
-  return parse_json(std::make_shared<SourceText>(SourceText{"test.json", text}), diagnostics);
+  return *parse_json(std::make_shared<SourceText>(SourceText{"test.json", text}), diagnostics);
 }
 
 TEST(Description, CallsAFunctorWithItsParameters) {
