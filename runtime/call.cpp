@@ -138,6 +138,9 @@ Context Caller::context(int n, const std::string& item) const {
   context.on_log = [this, n, item](std::string_view message) {
     for (auto* o : options_.observers) o->log(n, item, message);
   };
+  context.on_warning = [this, n, item](std::string_view message) {
+    for (auto* o : options_.observers) o->warn(n, item, message);
+  };
   return context;
 }
 
@@ -242,19 +245,23 @@ OpenSource::OpenSource(Caller& caller, int node, std::vector<Input> inputs)
 }
 
 std::optional<Item<std::vector<Value>>> OpenSource::pull() {
-  const Caller::Watch watch(caller_, node_, "");
-  try {
-    return stream_->next();
-  } catch (const Cancelled&) {
-    throw;
-  } catch (...) {
-    // The key of the item that failed is not known, that of the one before is.
-    const auto cause = cause_of(std::current_exception());
-    caller_.failed(node_, "",
-                   last_.empty() ? fmt::format("the first item: {}", cause)
-                                 : fmt::format("the item after \"{}\": {}", last_, cause));
+  for (;;) {
+    const Caller::Watch watch(caller_, node_, "");
+    try {
+      ++pulled_;
+      return stream_->next();
+    } catch (const Cancelled&) {
+      throw;
+    } catch (...) {
+      // The key of the item that failed is not known, that of the one before is.
+      const auto cause = cause_of(std::current_exception());
+      caller_.failed(node_, "",
+                     last_.empty() ? fmt::format("the first item: {}", cause)
+                                   : fmt::format("the item after \"{}\": {}", last_, cause));
+      // A source of unknown length might fail for ever.
+      if (pulled_ >= stream_->size().value_or(0)) return {};
+    }
   }
-  return {};
 }
 
 std::optional<Item<std::vector<Value>>> OpenSource::next() {

@@ -101,6 +101,7 @@ class OpenSource {
   std::optional<AnyStream> stream_;
   std::set<std::string> keys_;
   std::string last_;
+  std::size_t pulled_ = 0;
 };
 
 }  // namespace talkgraph

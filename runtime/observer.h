@@ -62,6 +62,7 @@ class RunObserver {
   /// What a node tells through its Context.
   virtual void progress(int /*node*/, const std::string& /*item*/, double /*share*/) {}
   virtual void log(int /*node*/, const std::string& /*item*/, std::string_view /*message*/) {}
+  virtual void warn(int /*node*/, const std::string& /*item*/, std::string_view /*message*/) {}
   /// An item failed and the run keeps going; what stops a run is told by ended().
   virtual void failed(const Failure&) {}
   virtual void ended(const RunReport&) {}

@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talkgraph {
 namespace {
 
-constexpr std::size_t most_live_lines = 10;
+constexpr std::size_t most_lines = 10, most_plain_lines = 4;
 
 double seconds(Progress::Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
@@ -28,9 +29,11 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
 }
 
-Progress::Progress(std::FILE* out)
-    : Progress(out, isatty(fileno(out)) != 0,
-               isatty(fileno(out)) != 0 ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000)) {}
+Progress::Progress(bool quiet, std::FILE* out)
+    : Progress(out, !quiet && isatty(fileno(out)) != 0,
+               quiet                      ? Clock::duration::max()
+               : isatty(fileno(out)) != 0 ? std::chrono::milliseconds(200)
+                                          : std::chrono::milliseconds(5000)) {}
 
 Progress::Progress(std::FILE* out, bool terminal, Clock::duration interval)
     : out_(out), terminal_(terminal), interval_(interval) {}
@@ -46,9 +49,11 @@ void Progress::started(const Graph& graph) {
     NodeState state;
     state.name = graph.nodes[n].name;
     state.domain = graph.nodes[n].output_domain(static_cast<int>(n));
+    state.source = graph.nodes[n].type->makes_stream;
     state.runs_once = state.domain < 0;
     nodes_.push_back(std::move(state));
   }
+  if (interval_ == Clock::duration::max()) return;
   ticker_ = std::jthread([this](std::stop_token end) {
     std::unique_lock ticking(mutex_);
     while (!end.stop_requested()) {
@@ -73,7 +78,9 @@ void Progress::call_started(int node, const std::string& item) {
 
 void Progress::call_ended(int node, const std::string& item) {
   const std::lock_guard lock(mutex_);
-  nodes_[static_cast<std::size_t>(node)].working.erase(item);
+  auto& state = nodes_[static_cast<std::size_t>(node)];
+  state.working.erase(item);
+  ++state.calls;
 }
 
 void Progress::item_done(int node, const std::string&) {
@@ -89,10 +96,17 @@ void Progress::progress(int node, const std::string& item, double share) {
   if (const auto it = working.find(item); it != working.end()) it->second = std::clamp(share, 0.0, 1.0);
 }
 
-void Progress::failed(const Failure& failure) {
+void Progress::warn(int node, const std::string& item, std::string_view message) {
+  tell(fmt::format("warning: {}{}: {}", nodes_[static_cast<std::size_t>(node)].name,
+                   item.empty() ? "" : fmt::format(", item \"{}\"", item), message));
+}
+
+void Progress::failed(const Failure& failure) { tell(failure.str()); }
+
+void Progress::tell(const std::string& text) {
   const std::lock_guard lock(mutex_);
   erase();
-  fmt::print(out_, "{}\n", failure.str());
+  fmt::print(out_, "{}\n", text);
   std::fflush(out_);
 }
 
@@ -111,39 +125,49 @@ std::vector<std::string> Progress::lines(Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> all;
   for (const auto& state : nodes_)
-    if (!state.working.empty()) all.push_back(line(state, now));
+    if (!state.working.empty()) all.push_back(line(state, now).text);
   return all;
 }
 
-std::string Progress::line(const NodeState& state, Clock::time_point now) const {
+Progress::Line Progress::line(const NodeState& state, Clock::time_point now) const {
   const double elapsed = seconds(now - state.since);
-  double done = static_cast<double>(state.done);
+  // Items for which a node has nothing to do are no measure of its pace.
+  const std::size_t called = state.source ? state.done : std::min(state.calls, state.done);
+  double done = static_cast<double>(called);
   for (const auto& [item, share] : state.working) done += share;
-  std::string text = fmt::format("{:<28} ", state.name);
+  Line out{fmt::format("{:<28} ", state.name), std::numeric_limits<double>::infinity()};
   const auto total_at = totals_.find(state.domain);
-  const double total = state.runs_once ? 1 : total_at != totals_.end() ? static_cast<double>(total_at->second) : 0;
+  const double total = state.runs_once             ? 1
+                       : total_at == totals_.end() ? 0
+                                                   : static_cast<double>(total_at->second - (state.done - called));
   if (state.runs_once)
-    text += done > 0 ? fmt::format("{:3.0f} %", 100 * done) : "working";
+    out.text += done > 0 ? fmt::format("{:3.0f} %", 100 * done) : "working";
   else
-    text += total > 0 ? fmt::format("{}/{:.0f}", state.done, total) : fmt::format("{}", state.done);
-  text += "  " + duration_text(elapsed);
-  if (!state.runs_once && state.done > 0 && elapsed > 0)
-    text += fmt::format("  {:.3g}/s", static_cast<double>(state.done) / elapsed);
-  if (total > 0 && done > 0 && done <= total && elapsed > 0)
-    text += fmt::format("  {} left", duration_text(elapsed * (total - done) / done));
-  return text;
+    out.text += total > 0 ? fmt::format("{}/{:.0f}", called, total) : fmt::format("{}", called);
+  out.text += "  " + duration_text(elapsed);
+  if (!state.runs_once && called > 0 && elapsed > 0)
+    out.text += fmt::format("  {:.3g}/s", static_cast<double>(called) / elapsed);
+  if (total > 0 && done > 0 && done <= total && elapsed > 0) {
+    out.left = elapsed * (total - done) / done;
+    out.text += fmt::format("  {} left", duration_text(out.left));
+  }
+  return out;
 }
 
 // Called with the mutex held.
 void Progress::report() {
   erase();
   const auto now = Clock::now();
+  std::vector<Line> lines;
   for (auto& state : nodes_) {
     // A fast node is seldom caught in a call: what went on since the last report counts as busy.
     const bool busy = !state.working.empty() || state.changed;
     state.changed = false;
-    if (!busy || !state.begun || (terminal_ && drawn_ == most_live_lines)) continue;
-    auto text = line(state, now);
+    if (busy && state.begun) lines.push_back(line(state, now));
+  }
+  std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.left > b.left; });
+  lines.resize(std::min(lines.size(), terminal_ ? most_lines : most_plain_lines));
+  for (auto& [text, left] : lines) {
     if (terminal_) {
       const auto width = terminal_width(out_);
       if (text.size() >= width) text.resize(width - 1);

@@ -16,12 +16,13 @@ namespace talkgraph {
 /// Tells how far a run is: on a terminal a live line for each busy node,
 /// elsewhere plain lines every few seconds. Each gives the node's name, the
 /// items done and their total where known, the rate, and an estimate of the
-/// time left.
+/// time left; the slowest come first. Warnings and failures are told at once.
 class Progress final : public RunObserver {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit Progress(std::FILE* out = stderr);
+  /// `quiet`: warnings and failures only.
+  explicit Progress(bool quiet = false, std::FILE* out = stderr);
   Progress(std::FILE* out, bool terminal, Clock::duration interval);
   ~Progress() override;
 
@@ -31,6 +32,7 @@ class Progress final : public RunObserver {
   void call_ended(int node, const std::string& item) override;
   void item_done(int node, const std::string& item) override;
   void progress(int node, const std::string& item, double share) override;
+  void warn(int node, const std::string& item, std::string_view message) override;
   void failed(const Failure&) override;
   void ended(const RunReport&) override;
 
@@ -41,16 +43,23 @@ class Progress final : public RunObserver {
   struct NodeState {
     std::string name;
     int domain = -1;  ///< whose items are counted
+    bool source = false;
     bool runs_once = false;
     std::size_t done = 0;
+    std::size_t calls = 0;
     std::map<std::string, double> working;  ///< items in a call, with the share done
     Clock::time_point since{};              ///< first call
     bool begun = false;
     bool changed = false;  ///< since the last report
   };
 
-  std::string line(const NodeState&, Clock::time_point now) const;
+  struct Line {
+    std::string text;
+    double left = 0;  ///< seconds, infinite where not known
+  };
+  Line line(const NodeState&, Clock::time_point now) const;
   void report();
+  void tell(const std::string& text);
   void erase();
   void stop();
 

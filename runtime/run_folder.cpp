@@ -62,6 +62,10 @@ void RunFolder::log(int node, const std::string& item, std::string_view message)
   log(item.empty() ? fmt::format("{}: {}", name, message) : fmt::format("{} [{}]: {}", name, item, message));
 }
 
+void RunFolder::warn(int node, const std::string& item, std::string_view message) {
+  log(node, item, fmt::format("warning: {}", message));
+}
+
 void RunFolder::failed(const Failure& failure) { log(failure.str()); }
 
 Json RunFolder::header(const std::string& status) const {

@@ -157,6 +157,15 @@ TEST_P(ExecutorTest, ASourceThatBreaksOffSaysAfterWhichItem) {
   EXPECT_EQ(go().output("out").items.size(), 3u);
 }
 
+TEST_P(ExecutorTest, KeepsGoingBehindAnItemThatASourceCannotMake) {
+  b_.output("out", b_.add("map", "toy.map", {b_.add("source", "toy.gap")}));
+  EXPECT_THAT(error().what(), HasSubstr("the item after \"u0\": u1 is damaged"));
+  options_.keep_going = true;
+  const auto result = go();
+  EXPECT_THAT(keys(result.output("out")), ElementsAre("u0", "u2", "u3", "u4"));
+  EXPECT_EQ(result.failures.size(), 1u);
+}
+
 TEST_P(ExecutorTest, CancelStopsRunningNodes) {
   b_.output("out", b_.add("endless", "toy.endless", {b_.add("source", "toy.source")}));
   std::atomic<bool> cancel{false};

@@ -67,6 +67,29 @@ TEST_F(ProgressTest, TellsItemsTotalRateAndTimeLeft) {
   EXPECT_THAT(lines[0], HasSubstr("1 min "));  // 30 more at half an item a second
 }
 
+TEST_F(ProgressTest, DoesNotCountItemsThatANodeHadNothingToDoFor) {
+  Paper paper;
+  Progress progress(paper.file, false, 1h);
+  progress.started(b_.graph);
+  progress.domain_size(source_, 40);
+  for (int i = 0; i < 20; ++i) progress.item_done(track_, std::to_string(i));
+  for (int i = 20; i < 22; ++i) {
+    progress.call_started(track_, std::to_string(i));
+    progress.call_ended(track_, std::to_string(i));
+    progress.item_done(track_, std::to_string(i));
+  }
+  progress.call_started(track_, "22");
+  EXPECT_THAT(progress.lines(Progress::Clock::now() + 1s).at(0), HasSubstr(" 2/20 "));
+}
+
+TEST_F(ProgressTest, TellsWarningsEvenWhenQuiet) {
+  Paper paper;
+  Progress progress(true, paper.file);
+  progress.started(b_.graph);
+  progress.warn(track_, "u3", "half of it is dark");
+  EXPECT_EQ(paper.text(), "warning: track, item \"u3\": half of it is dark\n");
+}
+
 TEST_F(ProgressTest, TellsTheShareOfANodeThatRunsOnce) {
   Paper paper;
   Progress progress(paper.file, false, 1h);

@@ -196,6 +196,21 @@ struct BreakOff {
 };
 inline void describe(Description<BreakOff>& d) { d.type("toy.break_off").summary("fails after u2").output("out"); }
 
+/// Gives u0 to u4 but for u1.
+struct Gap {
+  Stream<Mark> operator()() const {
+    return Stream<Mark>(
+        [i = 0]() mutable -> std::optional<Item<Mark>> {
+          if (i == 5) return {};
+          const int n = i++;
+          if (n == 1) throw std::runtime_error("u1 is damaged");
+          return Item<Mark>{"u" + std::to_string(n), {1}};
+        },
+        5);
+  }
+};
+inline void describe(Description<Gap>& d) { d.type("toy.gap").summary("fails at u1 of 5").output("out"); }
+
 /// Works until it is told to stop.
 struct Endless {
   Mark operator()(const Mark& in, Context& context) const {
@@ -223,6 +238,7 @@ inline Registry registry() {
   r.add<FailAt>();
   r.add<Twice>();
   r.add<BreakOff>();
+  r.add<Gap>();
   r.add<Endless>();
   return r;
 }
