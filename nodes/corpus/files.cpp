@@ -17,17 +17,27 @@ std::string unique_id(const std::string& stem, std::set<std::string>& taken) {
   return id;
 }
 
+void check_files(const std::vector<FilePath>& files) {
+  std::string complaints;
+  for (const auto& file : files)
+    if (!std::filesystem::exists(file.path) || std::filesystem::is_directory(file.path))
+      complaints +=
+          fmt::format("{}{}: {}", complaints.empty() ? "" : "\n", file.path,
+                      std::filesystem::exists(file.path) ? "is a folder; name its files" : "there is no such file");
+  if (!complaints.empty()) throw std::runtime_error(complaints);
+}
+
 }  // namespace
 
 Stream<Recording> SoundFiles::operator()() const {
   if (!transcripts.empty() && transcripts.size() != files.size())
     throw std::invalid_argument(
         fmt::format("{} files but {} transcripts: give one for each file, or none", files.size(), transcripts.size()));
+  check_files(files);
   std::vector<Item<Recording>> items;
   std::set<std::string> taken;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::string& path = files[i].path;
-    if (!std::filesystem::is_regular_file(path)) throw std::runtime_error(path + ": there is no such file");
     Recording recording;
     recording.id = unique_id(std::filesystem::path(path).stem().string(), taken);
     recording.audio = [path] { return read_audio(path); };

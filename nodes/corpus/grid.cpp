@@ -25,10 +25,11 @@ struct Clip {
 /// The clips that split.json names, at most `limit` of each split.
 std::vector<Clip> read_splits(const fs::path& file, int limit, Diagnostics& diagnostics) {
   const auto source = std::make_shared<SourceText>(SourceText{file.string(), read_text_file(file.string())});
-  const LocatedJson json = parse_json(source, diagnostics);
+  const auto parsed = parse_json(source, diagnostics);
   std::vector<Clip> clips;
   std::set<std::string> seen;
-  if (!diagnostics.ok()) return clips;
+  if (!parsed) return clips;
+  const LocatedJson& json = *parsed;
   if (!json.is(LocatedJson::Kind::object))
     diagnostics.error(json.place, "an object from splits to lists of clips is expected");
   for (const auto& split : json.members) {
@@ -87,7 +88,7 @@ Recording read_clip(const fs::path& folder, const Clip& clip, bool with_landmark
 Stream<Recording> Grid::operator()() const {
   const fs::path root(folder.path);
   if (!fs::is_directory(root))
-    throw std::runtime_error(folder.path + ": there is no such folder; docs/manifest.md says how to get the corpus");
+    throw std::runtime_error(folder.path + ": there is no such folder; docs/grid.md says how to get the corpus");
   Diagnostics diagnostics;
   auto clips = read_splits(root / "split.json", limit, diagnostics);
   if (!diagnostics.ok()) throw std::runtime_error(diagnostics.str());

@@ -8,6 +8,7 @@
 
 #include "nodes/corpus/text.h"
 #include "nodes/phones/label_files.h"
+#include "nodes/phones/visemes.h"
 
 namespace talkgraph {
 namespace {
@@ -79,7 +80,11 @@ PhoneTrack read_phones(const std::string& path) {
   for (const auto& interval : read_intervals(path, "phones")) {
     const double at = track.phones.empty() ? 0 : track.phones.back().end;
     if (interval.start > at) add("sil", at, interval.start);
-    add(normalised_phone(interval.label), interval.start, interval.end);
+    const std::string phone = normalised_phone(interval.label);
+    if (!is_phone(phone))
+      throw std::runtime_error(
+          fmt::format("{}: \"{}\" at {:.3f} s is no CMU or BEEP phone", path, interval.label, interval.start));
+    add(phone, interval.start, interval.end);
   }
   if (track.phones.empty()) throw std::runtime_error(path + ": holds no labels");
   return track;

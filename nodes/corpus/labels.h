@@ -19,7 +19,7 @@ std::string normalised_phone(const std::string& label);
 std::vector<Interval> read_intervals(const std::string& path, const std::string& tier);
 
 /// Phones, normalised; gaps become "sil", neighbouring silences are joined, the
-/// first phone starts at 0.
+/// first phone starts at 0. What is no CMU or BEEP phone is refused.
 PhoneTrack read_phones(const std::string& path);
 
 /// Words in lower case; pauses (as in normalised_phone) become "sil".

@@ -1,5 +1,7 @@
 #include "nodes/corpus/manifest.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <stdexcept>
 
@@ -30,21 +32,40 @@ std::optional<Transcript> transcript(const ManifestClip& clip, const std::option
   return {};
 }
 
-Recording read_clip(const ManifestClip& clip) {
+/// Reads a clip's labels; what is wrong with them is added to `complaints`.
+Recording with_labels(const ManifestClip& clip, std::string& complaints) {
   Recording recording;
+  const auto attempt = [&](const auto& read) {
+    try {
+      read();
+    } catch (const std::runtime_error& e) {
+      complaints += fmt::format("{}clip \"{}\": {}", complaints.empty() ? "" : "\n", clip.id, e.what());
+    }
+  };
+  attempt([&] {
+    if (!clip.phones.empty()) recording.phones = read_phones(clip.phones);
+  });
+  attempt([&] {
+    if (!clip.words.empty()) recording.words = read_words(clip.words);
+    recording.transcript = transcript(clip, recording.words);
+  });
+  return recording;
+}
+
+/// Adds sound, pictures and tracks, which are too large to be read before they are asked for.
+Recording with_media(const ManifestClip& clip, Recording recording) try {
   recording.id = clip.id;
   recording.split = clip.split;
   recording.audio = [path = clip.audio.empty() ? clip.video : clip.audio] { return read_audio(path); };
   if (!clip.video.empty()) recording.video = [path = clip.video, rate = clip.rate] { return open(path, rate); };
   if (!clip.visual.empty()) recording.visual = read_visual(clip);
-  if (!clip.phones.empty()) recording.phones = read_phones(clip.phones);
-  if (!clip.words.empty()) recording.words = read_words(clip.words);
-  recording.transcript = transcript(clip, recording.words);
   if (!clip.landmarks.empty()) {
     const Rational rate = clip.rate ? *clip.rate : recording.video().source->rate();
     recording.landmarks = read_landmarks(clip.landmarks, rate, clip.landmark_scheme);
   }
   return recording;
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(fmt::format("clip \"{}\": {}", clip.id, e.what()));
 }
 
 }  // namespace
@@ -53,12 +74,17 @@ Stream<Recording> Manifest::operator()() const {
   Diagnostics diagnostics;
   auto clips = read_manifest(file.path, diagnostics);
   if (!diagnostics.ok()) throw std::runtime_error(diagnostics.str());
+  std::vector<Recording> recordings;
+  std::string complaints;
+  for (const auto& clip : clips) recordings.push_back(with_labels(clip, complaints));
+  if (!complaints.empty()) throw std::runtime_error(complaints);
   const std::size_t count = clips.size();
   return Stream<Recording>(
-      [clips = std::move(clips), i = std::size_t{0}]() mutable -> std::optional<Item<Recording>> {
+      [clips = std::move(clips), recordings = std::move(recordings),
+       i = std::size_t{0}]() mutable -> std::optional<Item<Recording>> {
         if (i == clips.size()) return {};
-        const ManifestClip& clip = clips[i++];
-        return Item<Recording>{clip.id, read_clip(clip)};
+        const std::size_t n = i++;
+        return Item<Recording>{clips[n].id, with_media(clips[n], recordings[n])};
       },
       count);
 }

@@ -111,6 +111,14 @@ void read_transcript(const Members& clip, ManifestClip& out) {
   clip.path("transcript", out.transcript_file, {}, false);
 }
 
+/// Ids name files.
+void check_id(const Members& clip, const std::string& id) {
+  if (id.empty()) return clip.error("a clip needs an \"id\"");
+  const bool plain = std::none_of(id.begin(), id.end(), [](unsigned char c) { return c < ' ' || c == '/'; });
+  if (!plain || id.size() > 100 || id[0] == '.')
+    clip.error("an \"id\" names files: at most 100 bytes, without '/' and line ends, not beginning with '.'");
+}
+
 ManifestClip read_clip(const LocatedJson& json, const fs::path& folder, const std::optional<Rational>& rate,
                        Diagnostics& diagnostics) {
   const Members clip(json, folder, diagnostics,
@@ -127,7 +135,7 @@ ManifestClip read_clip(const LocatedJson& json, const fs::path& folder, const st
   read_visual(clip, out);
   read_landmarks(clip, out);
   read_transcript(clip, out);
-  if (out.id.empty()) clip.error("a clip needs an \"id\"");
+  check_id(clip, out.id);
   const bool folder_of_pictures = fs::is_directory(out.video);
   if (out.audio.empty() && (out.video.empty() || folder_of_pictures))
     clip.error("a clip needs sound: \"audio\", or a \"video\" file with a sound track");
@@ -141,9 +149,10 @@ ManifestClip read_clip(const LocatedJson& json, const fs::path& folder, const st
 
 std::vector<ManifestClip> read_manifest(const std::string& file, Diagnostics& diagnostics) {
   const auto source = std::make_shared<SourceText>(SourceText{file, read_text_file(file)});
-  const LocatedJson json = parse_json(source, diagnostics);
+  const auto parsed = parse_json(source, diagnostics);
   std::vector<ManifestClip> clips;
-  if (!diagnostics.ok()) return clips;
+  if (!parsed) return clips;
+  const LocatedJson& json = *parsed;
   const fs::path folder = fs::absolute(file).parent_path();
   if (!json.is(Kind::object)) {
     diagnostics.error(json.place, "a manifest is an object with a list \"clips\"");

@@ -20,6 +20,23 @@ void check_landmarks(const LandmarkTrack& landmarks, const VideoSource& video) {
                                          video.rate().str(), landmarks.rate.str()));
 }
 
+void check_rate(const VideoSource& video, const Rational& fps) {
+  if (fps.num() == 0 || video.rate() == fps) return;
+  throw std::runtime_error(fmt::format(
+      "{}: has {} frames per second, this graph works at {}: set its fps to {}, if all recordings have that rate",
+      video.name(), video.rate().str(), fps.str(), video.rate().str()));
+}
+
+void check_end(const std::string& id, const char* what, const std::vector<Interval>& labels, double seconds) {
+  if (labels.empty()) return;
+  const double end = labels.back().end;
+  if (end > seconds + 0.5 || end < 0.1 * seconds)
+    throw std::runtime_error(
+        fmt::format("{}: its {} end at {:.6g} s, its sound at {:.2f} s: are the times in the unit of the format (HTK "
+                    ".lab: 100 ns, GRID .align: 1/25000 s), and of this recording?",
+                    id, what, end, seconds));
+}
+
 }  // namespace
 
 RecordingParts Parts::operator()(const Recording& recording, Context& context) const {
@@ -28,12 +45,15 @@ RecordingParts Parts::operator()(const Recording& recording, Context& context) c
       recording.visual};
   const auto compare = [&](double seconds, const char* what) {
     if (std::abs(parts.audio.seconds() - seconds) > tolerance)
-      context.log(fmt::format("{}: the sound lasts {:.2f} s, the {} {:.2f} s: do they belong together?", recording.id,
-                              parts.audio.seconds(), what, seconds));
+      context.warn(fmt::format("{}: the sound lasts {:.2f} s, the {} {:.2f} s: do they belong together?", recording.id,
+                               parts.audio.seconds(), what, seconds));
   };
+  if (parts.phones) check_end(recording.id, "phones", parts.phones->phones, parts.audio.seconds());
+  if (parts.words) check_end(recording.id, "words", parts.words->words, parts.audio.seconds());
   if (parts.visual) compare(static_cast<double>(parts.visual->frames()) / parts.visual->rate.value(), "visual track");
   if (!recording.video) return parts;
   parts.video = recording.video();
+  check_rate(*parts.video->source, fps);
   if (!check) return parts;
   parts.video = CheckVideo{}(*parts.video, context);
   const VideoSource& source = *parts.video->source;
@@ -52,8 +72,9 @@ void describe(Description<Parts>& d) {
   d.output("phones", &RecordingParts::phones);
   d.output("landmarks", &RecordingParts::landmarks);
   d.output("visual", &RecordingParts::visual, "ready-made visual track");
+  d.param("fps", &Parts::fps).unit("frames/s").doc("rate that pictures must have; 0: any");
   d.param("check", &Parts::check).doc("decodes the video once to find damaged frames; off where only sound is used");
-  d.param("tolerance", &Parts::tolerance).positive().unit("s").doc("difference of sound and picture that is reported");
+  d.param("tolerance", &Parts::tolerance).positive().unit("s").doc("difference of sound and picture that is warned of");
 }
 
 }  // namespace talkgraph

@@ -20,9 +20,12 @@ struct RecordingParts {
 
 /// Takes a recording apart: reads its sound, opens its video. With `check` it decodes the
 /// video once: damaged frames are marked (media.check_video), landmarks must be as many as
-/// frames (give or take 2, else std::runtime_error), and a sound that differs from the
-/// picture in length by more than `tolerance` is reported in the log.
+/// frames (give or take 2), and of a sound that differs from the picture in length by more
+/// than `tolerance` the user is warned. Throws std::runtime_error if not, if pictures have
+/// another rate than `fps`, or if labels end far from the end of the sound, as they do in
+/// another unit.
 struct Parts {
+  Rational fps;             ///< rate that pictures must have; 0: any
   bool check = true;        ///< off where only the sound is used: the video is then not decoded
   double tolerance = 0.25;  ///< seconds
 

@@ -5,6 +5,7 @@
 #include "nodes/corpus/manifest.h"
 #include "nodes/corpus/parts.h"
 #include "nodes/corpus/select.h"
+#include "nodes/corpus/splits.h"
 
 namespace talkgraph {
 
@@ -13,6 +14,7 @@ void register_corpus(Registry& registry) {
   registry.add<Manifest>();
   registry.add<SoundFiles>();
   registry.add<Select>();
+  registry.add<Splits>();
   registry.add<Parts>();
 }
 

@@ -262,7 +262,10 @@ Video CompositeFace::operator()(const AppearanceModel& model, const Track& param
   plan->settings = std::to_string(static_cast<int>(part)) + " " + std::to_string(blend_from) + " " +
                    std::to_string(blend_to) + " " + std::to_string(feather);
   if (plan->run.length == 0)
-    throw std::runtime_error(base.frames.source->name() + ": no frame with a tracked face to draw upon");
+    throw std::runtime_error(
+        base.frames.source->name() +
+        ": the model finds its face in no frame: it must be the speaker learnt, in colour, of about the size "
+        "in the recordings");
   return {std::make_shared<CompositeSource>(std::move(plan)), {}};
 }
 

@@ -13,9 +13,12 @@ struct Candidate {
   std::int64_t frame;
 };
 
-bool lies_inside(const Shape& shape, cv::Size size) {
+/// A face inside the picture, larger than a point.
+bool is_usable(const Shape& shape, cv::Size size) {
+  constexpr double smallest = 8;
   return shape.rows() > 0 && shape.allFinite() && shape.minCoeff() >= 0 && shape.col(0).maxCoeff() <= size.width - 1 &&
-         shape.col(1).maxCoeff() <= size.height - 1;
+         shape.col(1).maxCoeff() <= size.height - 1 &&
+         (shape.colwise().maxCoeff() - shape.colwise().minCoeff()).minCoeff() >= smallest;
 }
 
 std::map<std::string, std::vector<Candidate>> candidates_by_phone(const Collected<Video>& videos,
@@ -31,7 +34,7 @@ std::map<std::string, std::vector<Candidate>> candidates_by_phone(const Collecte
                                   static_cast<std::int64_t>(phones->labels.size())});
     for (std::int64_t t = 0; t < frames; ++t) {
       const auto at = static_cast<std::size_t>(t);
-      if (!videos[clip].is_damaged(t) && lies_inside(shapes->frames[at], size))
+      if (!videos[clip].is_damaged(t) && is_usable(shapes->frames[at], size))
         found[phones->labels[at]].push_back({clip, t});
     }
   }
@@ -73,6 +76,10 @@ Prototypes ChoosePrototypes::operator()(const Collected<Video>& videos, const Co
     const auto count = std::min(frames.size(), static_cast<std::size_t>(per_phone));
     for (std::size_t i = 0; i < count; ++i) chosen[frames[i].clip].insert(frames[i].frame);
   }
+  if (chosen.empty() && landmarks.empty())
+    throw std::runtime_error(
+        "no frame can serve as a prototype: none of the " + std::to_string(videos.size()) +
+        " clips to train on has landmarks; a face model is built from some, give them in the corpus");
   if (chosen.empty())
     throw std::runtime_error(
         "no frame can serve as a prototype: of " + std::to_string(videos.size()) +

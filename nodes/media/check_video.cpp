@@ -70,8 +70,8 @@ Video CheckVideo::operator()(const Video& video, Context& context) const {
     for (std::size_t n = 0; n < shares.size(); ++n)
       if (shares[n] > area) damaged.insert(static_cast<std::int64_t>(n));
   if (!damaged.empty())
-    context.log(fmt::format("{}: {} of {} frames are damaged ({} to {})", video.source->name(), damaged.size(),
-                            shares.size(), *damaged.begin(), *damaged.rbegin()));
+    context.warn(fmt::format("{}: {} of {} frames are damaged ({} to {})", video.source->name(), damaged.size(),
+                             shares.size(), *damaged.begin(), *damaged.rbegin()));
   return {video.source, {damaged.begin(), damaged.end()}};
 }
 

@@ -89,7 +89,8 @@ void check_fit(const SphinxAligner::Result& result, const Words& words, double m
   throw std::runtime_error(
       fmt::format("phones.align: the transcript does not match the sound: {} from {:.2f} s to {:.2f} s is unlike what "
                   "is said there "
-                  "(distance {:.0f} per frame, at most {:g} is taken); correct the transcript, or raise \"mismatch\"",
+                  "(distance {:.0f} per frame, at most {:g} is taken); correct the transcript, or leave it out to have "
+                  "the phones recognised",
                   quote(std::span(words).subspan(worst.first, worst.count)), sphinx_boundary(found[worst.first].start),
                   sphinx_boundary(found[worst.first + worst.count - 1].end), worst.distance, mismatch));
 }
@@ -101,6 +102,8 @@ std::optional<PhoneTrack> Align::operator()(const Audio& audio, const Transcript
   if (given) return *given;
   if (!transcript && !track) return {};
   const Words words = known_words(transcript, track);
+  if (words.empty() && transcript)
+    throw std::runtime_error("phones.align: the transcript holds no word; leave it out to have the phones recognised");
   if (words.empty() || is_blank(audio)) return all_silence(audio);
 
   if (audio.seconds() > kLongest)

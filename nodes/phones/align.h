@@ -19,9 +19,9 @@ namespace talkgraph {
 /// the item is dropped: see phones.recognise.
 ///
 /// The result covers the whole sound without gaps. Digital silence, sound
-/// shorter than 50 ms and an empty transcript give one "sil".
+/// shorter than 50 ms and a word track without words give one "sil".
 /// Errors: words that do not go with the sound, or do not fit into it, with the
-/// place; sound longer than 5 minutes.
+/// place; a transcript without words; sound longer than 5 minutes.
 struct Align {
   double mismatch = 50;  ///< how unlike their sound three seconds of words may be: a distance per frame
 

@@ -17,13 +17,15 @@ PhoneTrack Recognise::operator()(const Audio& audio, const PhoneTrack* known, Co
     throw std::runtime_error(fmt::format(
         "phones.recognise: the sound lasts {:.0f} s, PocketSphinx takes at most {:.0f} s at once; cut it at a pause",
         audio.seconds(), kLongest));
-  context.log("no transcript: phones are recognised and most of them will be wrong; give a transcript if you can");
+  context.warn("no transcript: about four in ten of the phones recognised will be wrong; give a transcript if you can");
   const auto phones = decoder_pool<SphinxPhoneLoop>().take()->decode(sphinx_samples(audio));
   return phones.empty() ? all_silence(audio) : phone_track(phones, audio.seconds());
 }
 
 void describe(Description<Recognise>& d) {
-  d.type("phones.recognise").summary("phones of speech whose words are not known; most of them are wrong").stored();
+  d.type("phones.recognise")
+      .summary("phones of speech whose words are not known; about four in ten are wrong")
+      .stored();
   d.source("PocketSphinx 0.8+5prealpha with its en-us model");
   d.input("audio").input("known", "phones that are known already, passed on");
   d.output("phones");

@@ -1,11 +1,24 @@
 #include "nodes/phones/visemes.h"
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 namespace talkgraph {
 
+namespace {
+
+bool is_pause(std::string_view label) { return label == "sil" || label == "breath"; }
+
+}  // namespace
+
+bool is_phone(std::string_view label) {
+  return is_pause(label) || std::any_of(std::begin(kVisemes), std::end(kVisemes),
+                                        [&](const PhoneViseme& entry) { return entry.phone == label; });
+}
+
 int viseme(std::string_view phone) {
-  if (phone == "sil" || phone == "breath") return 0;
+  if (is_pause(phone)) return 0;
   for (const auto& entry : kVisemes)
     if (entry.phone == phone) return entry.viseme;
   throw std::runtime_error("\"" + std::string(phone) +

@@ -22,6 +22,9 @@ inline constexpr PhoneViseme kVisemes[] = {
     {"ao", 10}, {"ay", 10}, {"ax", 11}, {"ea", 11}, {"eh", 11}, {"er", 11}, {"ey", 11}, {"ia", 12}, {"ih", 12},
     {"iy", 12}, {"oh", 13}, {"ow", 13}, {"oy", 13}, {"aw", 14}, {"ua", 14}, {"uh", 14}, {"uw", 14}};
 
+/// Whether a label is a CMU or BEEP phone, "sil" or "breath".
+bool is_phone(std::string_view label);
+
 /// The viseme of a phone; 0 for silence and breath. Throws std::runtime_error
 /// for what is no CMU or BEEP phone.
 int viseme(std::string_view phone);

@@ -1,5 +1,7 @@
 #include "nodes/plot/mean_trajectory.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -40,7 +42,7 @@ Plot MeanTrajectory::operator()(const Collected<Track>& truth, const Collected<T
     const FrameLabels* l = labels.find(truth.key(i));
     if (!p || !l || truth[i].frames() == 0 || p->frames() == 0) continue;
     if (dimension >= truth[i].dimension() || dimension >= p->dimension())
-      throw std::runtime_error("there is no dimension " + std::to_string(dimension) + " in " + truth.key(i));
+      return {title + fmt::format(": the tracks have no parameter {}", dimension + 1), draw_panels(title, {})};
     const auto labelled = static_cast<Eigen::Index>(l->labels.size());
     const auto [shortest, longest] = std::minmax({labelled, truth[i].frames(), p->frames()});
     if (longest - shortest > 2)

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 
@@ -7,6 +9,7 @@
 #include "nodes/corpus/parts.h"
 #include "nodes/corpus/register.h"
 #include "nodes/corpus/select.h"
+#include "nodes/corpus/splits.h"
 #include "nodes/media/audio_file.h"
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/register.h"
@@ -183,6 +186,36 @@ TEST_F(ManifestTest, AllThatIsWrongIsToldInOneGo) {
   EXPECT_THAT(error, HasSubstr("m.json:8:2: error: a clip is an object"));
 }
 
+TEST_F(ManifestTest, IdsNameFiles) {
+  write_audio(path("a.wav"), tone(0.1, 8000));
+  for (const char* id : {"", "../x", ".hidden", "a/b", "two\\nlines"})
+    EXPECT_THAT(error_of([&] { node(fmt::format(R"({{"clips": [{{"id": "{}", "audio": "a.wav"}}]}})", id))(); }),
+                AllOf(HasSubstr("m.json:1:"), HasSubstr("\"id\"")))
+        << id;
+  EXPECT_EQ(all(node(R"({"clips": [{"id": "ä b-1.2", "audio": "a.wav"}]})")()).size(), 1u);
+}
+
+TEST_F(ManifestTest, LabelsOfAllClipsAreReadBeforeAnythingElse) {
+  write_audio(path("a.wav"), tone(0.1, 8000));
+  write("a.lab", "0 1000000 Q7\n");
+  write("b.align", "0 1\n");
+  const std::string error = error_of([&] {
+    node(R"({"clips": [{"id": "one", "audio": "a.wav", "phones": "a.lab"},
+                       {"id": "two", "audio": "a.wav", "words": "b.align"}]})")();
+  });
+  EXPECT_THAT(error, HasSubstr("clip \"one\": " + path("a.lab") + ": \"Q7\" at 0.000 s is no CMU or BEEP phone"));
+  EXPECT_THAT(error, HasSubstr("clip \"two\": " + path("b.align") + ":1: "));
+}
+
+TEST_F(ManifestTest, AnErrorInAFileNamesTheClip) {
+  write_audio(path("a.wav"), tone(0.1, 8000));
+  write("v.csv", "1,2\n3\n");
+  EXPECT_THAT(error_of([&] {
+                all(node(R"({"clips": [{"id": "u", "audio": "a.wav", "visual": {"file": "v.csv", "rate": 25}}]})")());
+              }),
+              HasSubstr("clip \"u\": "));
+}
+
 TEST_F(ManifestTest, BadFiles) {
   EXPECT_THAT(error_of([&] { node("{\"clips\": [}")(); }), HasSubstr("m.json:1:"));
   EXPECT_THAT(error_of([&] { node("[]")(); }), HasSubstr("a manifest is an object"));
@@ -211,8 +244,9 @@ TEST_F(CorpusTest, SoundFilesGetUniqueIds) {
   node.transcripts.pop_back();
   EXPECT_THROW(node(), std::invalid_argument);
   node.transcripts.clear();
-  node.files.push_back({path("none.wav")});
-  EXPECT_THAT(error_of([&] { node(); }), HasSubstr("none.wav: there is no such file"));
+  node.files = {{path("none.wav")}, {path("x.wav")}, {folder_.string()}};
+  EXPECT_EQ(error_of([&] { node(); }),
+            path("none.wav") + ": there is no such file\n" + folder_.string() + ": is a folder; name its files");
 }
 
 TEST(Select, TakesTheSplitsNamed) {
@@ -223,13 +257,46 @@ TEST(Select, TakesTheSplitsNamed) {
   EXPECT_FALSE((Select{{"test"}}(recording)));
 }
 
+Collected<Recording> of_splits(const std::vector<std::string>& splits) {
+  Collected<Recording> out;
+  for (const auto& split : splits) {
+    Recording recording;
+    recording.split = split;
+    out.add(std::to_string(out.size()), recording);
+  }
+  return out;
+}
+
+TEST(Splits, CountsThemInTheirOrder) {
+  const Table table = Splits{{"train"}, "test"}(of_splits({"train", "test", "train", "spare"}));
+  EXPECT_THAT(table.rows, ElementsAre("train", "test", "spare"));
+  EXPECT_EQ(table.cells, (std::vector<std::vector<double>>{{2}, {1}, {1}}));
+  EXPECT_TRUE(Splits{}(of_splits({})).rows.empty());
+}
+
+TEST(Splits, WhatIsNeededMustHaveRecordings) {
+  EXPECT_EQ(
+      error_of([] {
+        Splits{{"train"}, "validaton"}(of_splits({"train", "validation"}));
+      }),
+      "no recording belongs to the split \"validaton\" (did you mean \"validation\"?); there are: train, validation");
+  EXPECT_THAT(error_of([] {
+                Splits{{"train"}, "test"}(of_splits({"test"}));
+              }),
+              HasSubstr("no recording belongs to the split \"train\""));
+  EXPECT_THAT(error_of([] {
+                Splits{{"train", "test"}, "test"}(of_splits({"train", "test"}));
+              }),
+              HasSubstr("the split \"test\" is trained on and scored"));
+}
+
 class PartsTest : public testing::Test {
  protected:
   PartsTest() {
     recording_.id = "u";
     recording_.audio = [] { return tone(1, 16000); };
     recording_.video = [] { return test_video(25, 25); };
-    context_.on_log = [this](std::string_view text) { log_ += text; };
+    context_.on_warning = [this](std::string_view text) { log_ += text; };
   }
   Recording recording_;
   Context context_;
@@ -279,12 +346,34 @@ TEST_F(PartsTest, LandmarksMustBeOfTheVideo) {
               HasSubstr("25 frames per second, but its landmarks 30"));
 }
 
+TEST_F(PartsTest, PicturesHaveTheRateOfTheGraph) {
+  Parts parts;
+  parts.fps = 25;
+  EXPECT_NO_THROW(parts(recording_, context_));
+  parts.fps = 30;
+  EXPECT_THAT(error_of([&] { parts(recording_, context_); }),
+              HasSubstr("has 25 frames per second, this graph works at 30: set its fps to 25"));
+}
+
+TEST_F(PartsTest, LabelsEndWhereTheSoundDoes) {
+  recording_.phones = PhoneTrack{{{"aa", 0, 0.9}}};
+  recording_.words = WordTrack{{{"ah", 0, 1.2}}};
+  EXPECT_NO_THROW(Parts{}(recording_, context_));
+  recording_.words->words[0].end = 300;
+  EXPECT_THAT(error_of([&] { Parts{}(recording_, context_); }),
+              AllOf(HasSubstr("u: its words end at 300 s, its sound at 1.00 s"), HasSubstr("unit")));
+  recording_.words.reset();
+  recording_.phones->phones[0].end = 9e-5;
+  EXPECT_THAT(error_of([&] { Parts{}(recording_, context_); }), HasSubstr("u: its phones end at 9e-05 s"));
+}
+
 TEST(Registration, EveryNodeIsThere) {
   Registry registry;
   register_media(registry);
   register_corpus(registry);
-  for (const char* name : {"media.video", "media.check_video", "media.resample", "media.encode", "media.write_audio",
-                           "corpus.grid", "corpus.manifest", "corpus.files", "corpus.select", "corpus.parts"})
+  for (const char* name :
+       {"media.video", "media.check_video", "media.resample", "media.encode", "media.write_audio", "corpus.grid",
+        "corpus.manifest", "corpus.files", "corpus.select", "corpus.splits", "corpus.parts"})
     EXPECT_TRUE(registry.find(name)) << name;
 }
 

@@ -37,7 +37,7 @@ TEST(CheckVideo, MarksAreKeptAndLogged) {
   video.damaged = {8, 1};
   std::string log;
   Context context;
-  context.on_log = [&](std::string_view text) { log += text; };
+  context.on_warning = [&](std::string_view text) { log += text; };
   EXPECT_THAT(CheckVideo{}(video, context).damaged, ElementsAre(1, 3, 8));
   EXPECT_THAT(log, HasSubstr("clip: 3 of 10 frames are damaged"));
 }

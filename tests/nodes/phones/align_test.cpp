@@ -109,7 +109,7 @@ TEST_F(SpokenSentence, WithoutWordsIsLeftToRecognition) {
   EXPECT_FALSE(Align{}(sentence.audio, nullptr, nullptr, nullptr));
   Context context;
   std::string said;
-  context.on_log = [&](std::string_view message) { said = message; };
+  context.on_warning = [&](std::string_view message) { said = message; };
   const PhoneTrack phones = Recognise{}(sentence.audio, nullptr, context);
   expect_covers(phones, sentence.audio.seconds());
   EXPECT_GT(phones.phones.size(), 10u);
@@ -150,9 +150,9 @@ TEST(Align, CallsSilenceSilence) {
   EXPECT_TRUE(align(Audio{}, "hello").phones.empty());
 }
 
-TEST(Align, CallsAnEmptyTranscriptSilence) {
+TEST(Align, RefusesATranscriptWithoutWords) {
   const Utterance word = speak("hello", {});
-  EXPECT_EQ(align(word.audio, " ... ").phones.size(), 1u);
+  EXPECT_THAT(error_of(word.audio, " ... "), HasSubstr("the transcript holds no word; leave it out"));
 }
 
 TEST(Align, RefusesSoundThatPocketSphinxWouldDieOf) {
