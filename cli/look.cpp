@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <stdexcept>
 
 namespace talkgraph::cli {
@@ -39,8 +40,12 @@ std::string example(const NodeType& type) {
   const auto name = type.name.substr(type.name.rfind('.') + 1);
   std::string in;
   for (const auto& port : type.inputs) in += fmt::format("{}\"{}\": \"NODE.PORT\"", in.empty() ? "" : ", ", port.name);
-  return fmt::format("    \"{}\": {{ \"type\": \"{}\"{} }}\n", name, type.name,
-                     in.empty() ? "" : ", \"in\": { " + in + " }");
+  std::string params;
+  for (const auto& p : type.parameters)
+    if (p.required) params += fmt::format("{}\"{}\": {}", params.empty() ? "" : ", ", p.name, p.initial.dump());
+  return fmt::format("    \"{}\": {{ \"type\": \"{}\"{}{} }}\n", name, type.name,
+                     in.empty() ? "" : ", \"in\": { " + in + " }",
+                     params.empty() ? "" : ", \"params\": { " + params + " }");
 }
 
 std::string edge_type(const Graph& graph, const Graph::Port& port) {
@@ -50,6 +55,12 @@ std::string edge_type(const Graph& graph, const Graph::Port& port) {
 
 bool is_stream(const Graph& graph, const Graph::Port& port) {
   return graph.nodes[static_cast<std::size_t>(port.node)].output_domain(port.node) >= 0;
+}
+
+/// Whether a text holds a word, in capitals or not.
+bool speaks_of(const std::string& text, const std::string& word) {
+  return std::search(text.begin(), text.end(), word.begin(), word.end(),
+                     [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }) != text.end();
 }
 
 template <class Visit>
@@ -65,16 +76,21 @@ std::string list_nodes(const Registry& registry, const std::string& word) {
   std::string out;
   for (const auto& name : registry.names()) {
     const NodeType& type = *registry.find(name);
-    if (name.find(word) == std::string::npos && type.summary.find(word) == std::string::npos) continue;
+    if (!speaks_of(name, word) && !speaks_of(type.summary, word)) continue;
     out += fmt::format("{:<28} {}\n", name, type.summary);
   }
+  if (out.empty()) throw std::invalid_argument(fmt::format("no node type speaks of \"{}\"", word));
   return out;
 }
 
 std::string show_node(const Registry& registry, const std::string& name) {
   const NodeType* type = registry.find(name);
-  if (!type)
-    throw std::invalid_argument(fmt::format("unknown node type \"{}\"{}", name, did_you_mean(name, registry.names())));
+  if (!type) {
+    std::string hint = did_you_mean(name, registry.names());
+    for (const auto& known : registry.names())
+      if (hint.empty() && known.ends_with("." + name)) hint = fmt::format(" (did you mean \"{}\"?)", known);
+    throw std::invalid_argument(fmt::format("unknown node type \"{}\"{}", name, hint));
+  }
   std::string out = fmt::format("{} (version {}): {}\n", type->name, type->version, type->summary);
   if (!type->source.empty()) out += fmt::format("  source: {}\n", type->source);
   if (type->uses_random) out += "  draws random numbers from the graph's seed\n";

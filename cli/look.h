@@ -7,6 +7,7 @@
 namespace talkgraph::cli {
 
 /// The node types, a line each, those whose name or summary holds `word`.
+/// Throws std::invalid_argument if there are none.
 std::string list_nodes(const Registry& registry, const std::string& word);
 
 /// One node type whole: ports, parameters, source, an example to paste.

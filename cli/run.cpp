@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
 #include <cstdio>
 #include <memory>
 
+#include "cli/signals.h"
 #include "nodes/types/report.h"
 #include "runtime/progress.h"
 #include "runtime/run_folder.h"
@@ -13,38 +13,24 @@
 namespace talkgraph::cli {
 namespace {
 
-std::atomic<bool> interrupted{false};
-
-/// Ctrl-C asks the run to stop; a second one ends the program at once.
-class InterruptGuard {
- public:
-  InterruptGuard() : before_(std::signal(SIGINT, handle)) { interrupted = false; }
-  ~InterruptGuard() { std::signal(SIGINT, before_); }
-
- private:
-  static void handle(int) {
-    interrupted = true;
-    std::signal(SIGINT, SIG_DFL);
-  }
-  void (*before_)(int);
-};
-
 Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunObserver*> observers,
                 const std::filesystem::path& folder) {
-  Progress progress;
-  if (!command.quiet) observers.push_back(&progress);
+  Progress progress(command.quiet);
+  observers.push_back(&progress);
   const InterruptGuard guard;
   RunOptions options;
   options.threads = command.threads;
   options.executor = command.serial ? Executor::serial : Executor::flow;
   options.folder = folder;
   options.keep_going = command.keep_going;
-  options.cancel = &interrupted;
+  options.cancel = guard.flag();
   options.observers = std::move(observers);
   try {
     Outcome outcome{success, run(graph, options)};
-    for (const auto& failure : outcome.result->failures) fmt::print(stderr, "failed: {}\n", failure.str());
-    if (!outcome.result->failures.empty()) outcome.code = failed;
+    if (const auto failures = outcome.result->failures.size()) {
+      fmt::print(stderr, "{} failed, as said above\n", failures);
+      outcome.code = failed;
+    }
     return outcome;
   } catch (const Cancelled&) {
     fmt::print(stderr, "stopped\n");
@@ -79,6 +65,9 @@ int run_file(const std::string& file, const RunCommand& command, const Registry&
     fmt::print(stderr, "{}", diagnostics.str());
     return usage;
   }
+  if (!command.overwrite && std::filesystem::exists(command.folder / "run.json"))
+    throw std::invalid_argument(fmt::format("{}: holds a run already; name another folder with -o, or give --overwrite",
+                                            command.folder.string()));
   RunFolder folder(*graph, command.folder);
   const Outcome outcome = execute(*graph, command, {&folder}, folder.path());
   fmt::print("run folder: {}\n", folder.path().string());

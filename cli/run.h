@@ -18,6 +18,7 @@ struct RunCommand {
   int threads = 2;
   bool serial = false;
   bool keep_going = false;
+  bool overwrite = false;  ///< a folder that holds a run may be written to
   bool quiet = false;
 };
 

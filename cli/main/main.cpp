@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <opencv2/core.hpp>
 
@@ -9,6 +11,7 @@
 #include "cli/registry.h"
 #include "cli/run.h"
 #include "cli/speak.h"
+#include "nodes/model/save.h"
 
 extern "C" void openblas_set_num_threads(int);
 
@@ -17,9 +20,12 @@ namespace {
 using namespace talkgraph;
 using namespace talkgraph::cli;
 
+/// A graph file, or the graph that a model file keeps.
 std::optional<Graph> load(const std::string& file, const Registry& registry, const std::vector<std::string>& sets) {
   Diagnostics diagnostics;
-  auto graph = load_graph(file, registry, diagnostics, {sets});
+  auto graph = std::filesystem::path(file).extension() == ".h5"
+                   ? load_graph_text(file, model_graph(file), registry, diagnostics, {sets})
+                   : load_graph(file, registry, diagnostics, {sets});
   if (!graph) fmt::print(stderr, "{}", diagnostics.str());
   return graph;
 }
@@ -48,6 +54,7 @@ int draw(const std::string& file, const Registry& registry, const std::vector<st
   }
   std::string command = "dot -Tsvg";
   if (!output.empty()) command += " -o '" + CLI::detail::find_and_replace(output, "'", "'\\''") + "'";
+  std::signal(SIGPIPE, SIG_IGN);  // a missing dot shall be told, not end the program
   std::FILE* dot = popen(command.c_str(), "w");
   if (!dot) return fmt::print(stderr, "Graphviz (dot) cannot be started\n"), failed;
   std::fputs(text.c_str(), dot);
@@ -75,13 +82,16 @@ int main(int argc, char** argv) {
   run_app->add_option("--threads", run.threads, "threads")->check(CLI::Range(1, 256));
   run_app->add_flag("--serial", run.serial, "one thread, node by node");
   run_app->add_flag("--keep-going", run.keep_going, "finish what can be finished, list what failed");
-  run_app->add_flag("-q,--quiet", run.quiet, "no progress");
+  run_app->add_flag("--overwrite", run.overwrite, "write to a folder that holds a run already");
+  run_app->add_flag("-q,--quiet", run.quiet, "no progress, only warnings and failures");
 
   auto* speak_app = app.add_subcommand("speak", "animate new speech with a trained model");
   speak_app->add_option("model", speech.model, "model file that a run wrote")->required();
   speak_app->add_option("speech", speech.files, "sound files");
   speak_app->add_option("--text", speech.text, "what espeak-ng shall say, instead of sound files");
-  speak_app->add_option("--transcript", speech.transcripts, "what a sound file says; once for each, in order")
+  speak_app
+      ->add_option("--transcript", speech.transcripts,
+                   "what a sound file says, or a .txt file of it; once for each, in order")
       ->take_all()
       ->allow_extra_args(false);
   speak_app->add_option("-o,--output", speech.output, "clip (.mp4 or .webm); a folder for several sound files");
@@ -91,7 +101,7 @@ int main(int argc, char** argv) {
       ->take_all()
       ->allow_extra_args(false);
   speak_app->add_option("--threads", speech.threads, "threads")->check(CLI::Range(1, 256));
-  speak_app->add_flag("-q,--quiet", speech.quiet, "no progress");
+  speak_app->add_flag("-q,--quiet", speech.quiet, "no progress, only warnings and failures");
 
   auto* check_app = app.add_subcommand("check", "check graphs without running them");
   check_app->add_option("graphs", files, "graph files")->required();
@@ -117,12 +127,17 @@ int main(int argc, char** argv) {
 
   try {
     const Registry registry = all_nodes();
-    if (*run_app) return run_file(graph, run, registry);
-    if (*speak_app) return speak(speech, registry);
-    if (*check_app) return check(files, registry, sets);
-    if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
-    if (*node_app) return fmt::print("{}", show_node(registry, type)), success;
-    return draw(graph, registry, sets, format, output);
+    const auto command = [&]() -> int {
+      if (*run_app) return run_file(graph, run, registry);
+      if (*speak_app) return speak(speech, registry);
+      if (*check_app) return check(files, registry, sets);
+      if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
+      if (*node_app) return fmt::print("{}", show_node(registry, type)), success;
+      return draw(graph, registry, sets, format, output);
+    };
+    const int code = command();
+    if (std::fflush(stdout) != 0) throw std::runtime_error("standard output cannot be written to");
+    return code;
   } catch (const std::invalid_argument& e) {
     fmt::print(stderr, "talkgraph: {}\n", e.what());
     return usage;

@@ -55,7 +55,8 @@ TEST(Nodes, AllSayWhatTheyAreFor) {
     EXPECT_FALSE(type.summary.empty()) << name;
     EXPECT_NE(show_node(registry, name).find("example"), std::string::npos) << name;
   }
-  EXPECT_NE(list_nodes(registry, "mel").find("speech.mel"), std::string::npos);
+  EXPECT_NE(list_nodes(registry, "MEL").find("speech.mel"), std::string::npos);
+  EXPECT_THROW(list_nodes(registry, "zzz"), std::invalid_argument);
   EXPECT_THROW(show_node(registry, "speech.mell"), std::invalid_argument);
 }
 

@@ -46,7 +46,7 @@ TEST(Speak, RefusesFilesThatAreNoModels) {
   EXPECT_EQ(complaint(c), "nowhere.h5: there is no such model file");
   const test::TemporaryFolder folder;
   c.model = folder.write("model.h5", "text");
-  EXPECT_EQ(complaint(c), c.model + ": is missing or not an HDF5 file");
+  EXPECT_EQ(complaint(c), c.model + ": is not an HDF5 file");
 }
 
 }  // namespace
