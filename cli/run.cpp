@@ -62,7 +62,7 @@ int run_file(const std::string& file, const RunCommand& command, const Registry&
   Diagnostics diagnostics;
   const auto graph = load_graph(file, registry, diagnostics, {command.sets});
   if (!graph) {
-    fmt::print(stderr, "{}", diagnostics.str());
+    fmt::print(stderr, "{}\n", diagnostics.str());
     return usage;
   }
   if (!command.overwrite && std::filesystem::exists(command.folder / "run.json"))

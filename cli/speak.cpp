@@ -141,7 +141,7 @@ int speak(const SpeakCommand& command, const Registry& registry) {
   Diagnostics diagnostics;
   auto graph = load_graph_text(command.model, model_graph(command.model), registry, diagnostics, {settings(command)});
   if (!graph) {
-    fmt::print(stderr, "{}", diagnostics.str());
+    fmt::print(stderr, "{}\n", diagnostics.str());
     return usage;
   }
   for (auto& node : graph->nodes) node.place = {};  // places in a model file tell a user nothing

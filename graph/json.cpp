@@ -197,6 +197,7 @@ std::string Diagnostics::str() const {
     out += fmt::format("{}:{}:{}: error: {}\n", m.place.source->name, m.place.line, m.place.column, m.text);
     out += excerpt(m.place);
   }
+  if (!out.empty()) out.pop_back();  // the line end after the last
   return out;
 }
 

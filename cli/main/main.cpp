@@ -26,7 +26,7 @@ std::optional<Graph> load(const std::string& file, const Registry& registry, con
   auto graph = std::filesystem::path(file).extension() == ".h5"
                    ? load_graph_text(file, model_graph(file), registry, diagnostics, {sets})
                    : load_graph(file, registry, diagnostics, {sets});
-  if (!graph) fmt::print(stderr, "{}", diagnostics.str());
+  if (!graph) fmt::print(stderr, "{}\n", diagnostics.str());
   return graph;
 }
 

@@ -4,6 +4,7 @@
 #include "nodes/face/build.h"
 #include "nodes/face/choose_base.h"
 #include "nodes/face/composite.h"
+#include "nodes/face/crop.h"
 #include "nodes/face/landmarks.h"
 #include "nodes/face/modes.h"
 #include "nodes/face/parameters.h"
@@ -27,6 +28,7 @@ void register_face(Registry& registry) {
   registry.add<ChooseBase>();
   registry.add<CompositeFace>();
   registry.add<RenderFace>();
+  registry.add<Crop>();
   registry.add<SideBySide>();
   registry.add<FrameStrip>();
   registry.add<FaceModes>();

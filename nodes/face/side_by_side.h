@@ -5,7 +5,7 @@
 
 namespace talkgraph {
 
-/// Two videos beside each other, each under a label, at the height of the
+/// Two videos beside each other, each under a label (none if both are empty), at the height of the
 /// taller and the length of the shorter; sides are even. Rendered when read.
 /// Throws std::runtime_error if their rates differ.
 struct SideBySide {

@@ -1,8 +1,6 @@
 #include "nodes/media/video.h"
 
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
 
 #include "nodes/media/video_file.h"
 
@@ -11,9 +9,7 @@ namespace talkgraph {
 Video OpenVideo::operator()() const {
   if (std::filesystem::is_directory(file.path)) return open_frame_folder(file.path, rate);
   if (!is_picture_name(file.path)) return open_video(file.path);
-  const cv::Mat still = cv::imread(file.path, cv::IMREAD_COLOR);
-  if (still.empty()) throw std::runtime_error(file.path + ": is missing or cannot be decoded as a picture");
-  return video_from_frames({still}, rate, file.path);
+  return video_from_frames({read_picture(file.path)}, rate, file.path);
 }
 
 void describe(Description<OpenVideo>& d) {

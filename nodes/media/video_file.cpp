@@ -24,12 +24,6 @@ std::string take_number(const std::string& text, std::size_t& at) {
   return text.substr(from, at - from);
 }
 
-cv::Mat read_picture(const std::string& path) {
-  cv::Mat picture = cv::imread(path, cv::IMREAD_COLOR);
-  if (picture.empty()) throw std::runtime_error(path + ": cannot be decoded as a picture");
-  return picture;
-}
-
 class FolderVideo final : public VideoSource {
  public:
   FolderVideo(std::string folder, std::vector<std::string> files, Rational rate)
@@ -92,6 +86,13 @@ bool is_picture_name(const std::string& name) {
   std::string ending = fs::path(name).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
+}
+
+cv::Mat read_picture(const std::string& path) {
+  if (!std::filesystem::exists(path)) throw std::runtime_error(path + ": there is no such file");
+  cv::Mat picture = cv::imread(path, cv::IMREAD_COLOR);
+  if (picture.empty()) throw std::runtime_error(path + ": cannot be decoded as a picture");
+  return picture;
 }
 
 Video open_video(const std::string& path) {

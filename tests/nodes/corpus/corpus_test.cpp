@@ -20,6 +20,7 @@ namespace {
 
 using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -184,6 +185,7 @@ TEST_F(ManifestTest, AllThatIsWrongIsToldInOneGo) {
   EXPECT_THAT(error, HasSubstr("\"phones\" must end in one of .lab, .textgrid, .align"));
   EXPECT_THAT(error, HasSubstr("\"rate\": must be positive"));
   EXPECT_THAT(error, HasSubstr("m.json:8:2: error: a clip is an object"));
+  EXPECT_THAT(error, Not(EndsWith("\n")));
 }
 
 TEST_F(ManifestTest, IdsNameFiles) {

@@ -1,5 +1,6 @@
 #include "nodes/face/composite.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include "nodes/face/base_clip.h"
 #include "nodes/face/build.h"
 #include "nodes/face/choose_base.h"
+#include "nodes/face/crop.h"
 #include "nodes/face/modes.h"
 #include "nodes/face/parameters.h"
 #include "nodes/face/render.h"
@@ -162,8 +164,50 @@ TEST(SideBySide, HasTheShorterLengthAndEvenSides) {
   EXPECT_EQ(frames[0].size(), both.source->size());
   EXPECT_EQ(frames[0].cols % 2 + frames[0].rows % 2, 0);
   EXPECT_EQ(frames[0].at<cv::Vec3b>(frames[0].rows - 1, frames[0].cols - 1), cv::Vec3b(1, 2, 3));
+  EXPECT_EQ((SideBySide{"", ""}(small, small).source->size()), cv::Size(68, 52));
   EXPECT_NE(both.source->content_key(), SideBySide{}(talking(2), small).source->content_key());
   EXPECT_THROW(SideBySide{}(talking(1), video_from_frames({small.read_all()[0]}, Rational(30))), std::runtime_error);
+}
+
+LandmarkTrack corners(std::initializer_list<std::pair<double, double>> points) {
+  LandmarkTrack track;
+  for (const auto& [x, y] : points) track.frames.push_back((Shape(2, 2) << x, y, x + 10, y + 4).finished());
+  return track;
+}
+
+std::string crop_error(const Video& video, const LandmarkTrack& landmarks, std::vector<int> points = {}) {
+  try {
+    Crop{std::move(points)}(video, landmarks);
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return "nothing";
+}
+
+TEST(Crop, HoldsThePointsOfEveryFrame) {
+  cv::Mat picture(40, 60, CV_8UC3);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 60; ++x) picture.at<cv::Vec3b>(y, x) = cv::Vec3b(static_cast<uchar>(x), static_cast<uchar>(y));
+  Video video = video_from_frames({picture, picture, picture}, Rational(30));
+  video.damaged = {1};
+  const auto part = Crop{{}, 0.25}(video, corners({{20, 10}, {22, 12}}));
+  EXPECT_EQ(part.source->size(), cv::Size(20, 14));  // x from 17 to 35, y from 7 to 19, sides made even
+  EXPECT_EQ(part.source->rate(), Rational(30));
+  EXPECT_EQ(part.source->frames(), 3);
+  EXPECT_EQ(part.damaged, video.damaged);
+  const auto frames = part.read_all();
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_EQ(frames[2].at<cv::Vec3b>(0, 0), cv::Vec3b(17, 7));
+  EXPECT_EQ(Crop({1}, 0)(video, corners({{20, 10}, {25, 15}})).read_all()[0].at<cv::Vec3b>(0, 0), cv::Vec3b(30, 14));
+  EXPECT_EQ(Crop({}, 10)(video, corners({{20, 10}})).source->size(), cv::Size(60, 40));
+  EXPECT_NE(part.source->content_key(), video.source->content_key());
+}
+
+TEST(Crop, RefusesWhatHoldsNothing) {
+  const auto video = still(0.5, 1);
+  EXPECT_THAT(crop_error(video, {}), testing::HasSubstr("still: there are no landmarks"));
+  EXPECT_THAT(crop_error(video, corners({{20, 10}}), {2}), testing::HasSubstr("landmarks of 2 points have no point 2"));
+  EXPECT_THAT(crop_error(video, corners({{-500, 10}})), testing::HasSubstr("outside the picture"));
 }
 
 TEST(Sinks, WriteTheirPictures) {

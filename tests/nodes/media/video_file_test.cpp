@@ -116,7 +116,7 @@ TEST_F(VideoFileTest, TheNodeTakesFilesFoldersAndStills) {
   node.file = {path("2.png")};
   EXPECT_EQ(node().source->frames(), 1);
   node.file = {path("3.png")};
-  EXPECT_THAT(error_of([&] { node(); }), HasSubstr("3.png: is missing"));
+  EXPECT_THAT(error_of([&] { node(); }), HasSubstr("3.png: there is no such file"));
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/shape.h"
+#include "nodes/types/video.h"
+
+namespace talkgraph {
+
+/// The part of every frame that holds some landmarks in all of them: their box
+/// over the whole clip, wider by `margin` on each side, within the picture, with
+/// even sides. Cut when read. Throws std::runtime_error if a shape lacks one of
+/// the points, there is none, or the box lies outside the picture.
+struct Crop {
+  std::vector<int> points;  ///< empty: all; iBUG: the mouth is 48 to 67
+  double margin = 0.3;      ///< share of the longer side of the box
+
+  Video operator()(const Video& video, const LandmarkTrack& landmarks) const;
+};
+void describe(Description<Crop>& d);
+
+}  // namespace talkgraph
