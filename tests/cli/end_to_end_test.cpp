@@ -6,6 +6,7 @@
 #include "cli/registry.h"
 #include "cli/run.h"
 #include "cli/speak.h"
+#include "nodes/media/ffmpeg.h"
 #include "nodes/media/video_file.h"
 #include "tests/temporary_folder.h"
 
@@ -17,6 +18,10 @@ namespace fs = std::filesystem;
 // The main job, small: a speaker of ten sentences is learnt, two more are
 // synthesised, and the model then speaks a sentence that it has never heard.
 TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
+#ifndef TALKGRAPH_ESPEAK
+  GTEST_SKIP() << "built without espeak-ng, which the built-in speaker needs";
+#endif
+  if (!built_with_ffmpeg) GTEST_SKIP() << "built without FFmpeg, which writes the clips";
   const test::TemporaryFolder temporary;
   const fs::path folder = temporary.path() / "run";
   const Registry registry = all_nodes();

@@ -43,13 +43,6 @@ double mean_grey(const cv::Mat& picture, const Eigen::RowVector2d& at, int radiu
   return (mean[0] + mean[1] + mean[2]) / 3;
 }
 
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const Eigen::Map<const Eigen::ArrayXd> x(a.data(), static_cast<Eigen::Index>(a.size()));
-  const Eigen::Map<const Eigen::ArrayXd> y(b.data(), static_cast<Eigen::Index>(b.size()));
-  const Eigen::ArrayXd u = x - x.mean(), v = y - y.mean();
-  return (u * v).sum() / std::sqrt(u.square().sum() * v.square().sum());
-}
-
 TEST(Articulation, LipsCloseOnBilabials) {
   for (const auto* phone : {"p", "b", "m"}) EXPECT_LT(opening(shape_of(middle_of(phone))), 0.05) << phone;
 }
@@ -187,6 +180,13 @@ TEST(BuiltinSpeaker, ImpossibleNumbersAreRefused) {
 }
 
 #ifdef TALKGRAPH_ESPEAK
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  const Eigen::Map<const Eigen::ArrayXd> x(a.data(), static_cast<Eigen::Index>(a.size()));
+  const Eigen::Map<const Eigen::ArrayXd> y(b.data(), static_cast<Eigen::Index>(b.size()));
+  const Eigen::ArrayXd u = x - x.mean(), v = y - y.mean();
+  return (u * v).sum() / std::sqrt(u.square().sum() * v.square().sum());
+}
 
 std::vector<Item<Recording>> all_of(const BuiltinSpeaker& node) {
   std::vector<Item<Recording>> all;
