@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -45,6 +47,12 @@ struct unwrap_optional<std::optional<T>> {
   using type = T;
 };
 
+/// What a call operator takes from one input port.
+struct PortKind {
+  PortType type;
+  PortSpec::Kind kind = PortSpec::Kind::item;
+};
+
 /// One argument of a call operator: what it takes from the inputs.
 template <class A>
 struct Argument {
@@ -53,17 +61,14 @@ struct Argument {
       "a node takes its inputs as const A&, const Collected<A>&, const A*, and may take Random& and Context&");
   using T = std::remove_cvref_t<A>;
   static constexpr bool is_port = true;
-  static PortSpec spec() {
-    PortSpec p;
+  static constexpr PortKind port() {
     if constexpr (is_collected<T>::value) {
       static_assert(Port<typename is_collected<T>::Element>, "specialise port_type for what is collected");
-      p.type = port_type<typename is_collected<T>::Element>;
-      p.kind = PortSpec::Kind::collected;
+      return {port_type<typename is_collected<T>::Element>, PortSpec::Kind::collected};
     } else {
       static_assert(Port<T>, "specialise port_type for the type of this input");
-      p.type = port_type<T>;
+      return {port_type<T>};
     }
-    return p;
   }
   /// Owns what the argument refers to while the operator runs.
   static auto take(const Input& in) {
@@ -89,12 +94,7 @@ template <class T>
 struct Argument<const T*> {
   static_assert(Port<T>, "specialise port_type for the type of this input");
   static constexpr bool is_port = true;
-  static PortSpec spec() {
-    PortSpec p;
-    p.type = port_type<T>;
-    p.kind = PortSpec::Kind::optional;
-    return p;
-  }
+  static constexpr PortKind port() { return {port_type<T>, PortSpec::Kind::optional}; }
   static std::shared_ptr<const T> take(const Input& in) { return in.value ? in.value.share<T>() : nullptr; }
   static const T* give(const std::shared_ptr<const T>& held) { return held.get(); }
 };
@@ -108,10 +108,31 @@ struct Argument<Random&> {
   static constexpr bool is_port = false;
 };
 
+/// What a call operator takes from its input ports, in their order.
 template <class Arguments>
-inline constexpr std::size_t port_count = 0;
+struct Ports;
 template <class... A>
-inline constexpr std::size_t port_count<std::tuple<A...>> = (std::size_t{Argument<A>::is_port} + ... + 0);
+struct Ports<std::tuple<A...>> {
+  static constexpr auto kinds = [] {
+    std::array<PortKind, (std::size_t{Argument<A>::is_port} + ... + 0)> all;
+    [[maybe_unused]] std::size_t next = 0;
+    [[maybe_unused]] const auto add = [&]<class X>(std::type_identity<X>) {
+      if constexpr (Argument<X>::is_port) all[next++] = Argument<X>::port();
+    };
+    (add(std::type_identity<A>{}), ...);
+    return all;
+  }();
+  static constexpr bool use_random = (std::is_same_v<A, Random&> || ...);
+};
+
+/// Throws std::logic_error if the call operator takes no further input.
+void add_input(NodeType& type, std::span<const PortKind> kinds, std::string name, std::string doc);
+void add_output(NodeType& type, PortSpec spec);
+/// Throws std::logic_error if something is not described.
+void check_described(const NodeType& type, std::size_t inputs);
+/// `params` is null where a graph gives none.
+void read_parameters(const LocatedJson* params, const Place& place, void* node, const std::vector<ParameterSpec>& specs,
+                     const std::string& subject, Diagnostics& diagnostics);
 
 /// Calls `node` with its arguments taken from the inputs in order.
 template <class N, class... A>
@@ -157,8 +178,11 @@ class Description {
   using Call = detail::Signature<decltype(&N::operator())>;
   using Result = typename Call::Result;
   using Arguments = typename Call::Arguments;
+  using Ports = detail::Ports<Arguments>;
   static constexpr bool makes_stream = detail::is_stream<Result>::value;
-  using Produced = typename detail::unwrap_optional<typename detail::is_stream<Result>::Element>::type;
+  using Made = typename detail::is_stream<Result>::Element;
+  using Produced = typename detail::unwrap_optional<Made>::type;
+  static constexpr bool drops_items = !std::is_same_v<Made, Produced>;
 
  public:
   /// "family.name"
@@ -175,33 +199,22 @@ class Description {
 
   /// Names the next input port, in the order of the call operator's arguments.
   Description& input(std::string name, std::string doc = "") {
-    PortSpec spec = input_spec(type_.inputs.size(), std::make_index_sequence<std::tuple_size_v<Arguments>>{});
-    spec.name = std::move(name);
-    spec.doc = std::move(doc);
-    type_.inputs.push_back(std::move(spec));
+    detail::add_input(type_, Ports::kinds, std::move(name), std::move(doc));
     return *this;
   }
   /// Names the one output.
   Description& output(std::string name, std::string doc = "") {
     static_assert(Port<Produced>, "name the members of a returned struct: output(\"name\", &Out::member)");
-    add_output<Produced>(std::move(name), std::move(doc), detail::unwrap_optional<Result>{});
-    type_.outputs.back().may_drop = !std::is_same_v<typename detail::is_stream<Result>::Element, Produced>;
-    getters_.push_back([](Produced& all) { return Value::of(std::move(all)); });
-    return *this;
+    return add_output(std::move(name), std::move(doc), port_type<Produced>, drops_items,
+                      [](Produced& all) { return Value::of(std::move(all)); });
   }
   /// Names one member of the returned struct as an output.
   template <class M>
   Description& output(std::string name, M Produced::*member, std::string doc = "") {
     using T = typename detail::unwrap_optional<M>::type;
     static_assert(Port<T>, "specialise port_type for the type of this output");
-    PortSpec spec;
-    spec.name = std::move(name);
-    spec.doc = std::move(doc);
-    spec.type = port_type<T>;
-    spec.may_drop = !std::is_same_v<T, M> || !std::is_same_v<typename detail::is_stream<Result>::Element, Produced>;
-    type_.outputs.push_back(std::move(spec));
-    getters_.push_back([member](Produced& all) { return detail::to_value(std::move(all.*member)); });
-    return *this;
+    return add_output(std::move(name), std::move(doc), port_type<T>, drops_items || !std::is_same_v<T, M>,
+                      [member](Produced& all) { return detail::to_value(std::move(all.*member)); });
   }
   template <class M>
   ParameterHandle param(std::string name, M N::*member) {
@@ -214,27 +227,10 @@ class Description {
  private:
   using Getter = std::function<Value(Produced&)>;
 
-  template <class T, class Tag>
-  void add_output(std::string name, std::string doc, Tag) {
-    PortSpec spec;
-    spec.name = std::move(name);
-    spec.doc = std::move(doc);
-    spec.type = port_type<T>;
-    type_.outputs.push_back(std::move(spec));
-  }
-
-  template <std::size_t... I>
-  PortSpec input_spec(std::size_t wanted, std::index_sequence<I...>) {
-    PortSpec found;
-    std::size_t port = 0;
-    bool ok = false;
-    const auto look = [&]<class A>(std::type_identity<A>) {
-      if constexpr (detail::Argument<A>::is_port)
-        if (port++ == wanted) found = detail::Argument<A>::spec(), ok = true;
-    };
-    (look(std::type_identity<std::tuple_element_t<I, Arguments>>{}), ...);
-    if (!ok) throw std::logic_error(type_.name + ": more inputs described than the call operator takes");
-    return found;
+  Description& add_output(std::string name, std::string doc, PortType type, bool may_drop, Getter get) {
+    detail::add_output(type_, {std::move(name), std::move(doc), type, PortSpec::Kind::item, may_drop});
+    getters_.push_back(std::move(get));
+    return *this;
   }
 
   class Bound final : public Functor {
@@ -294,23 +290,15 @@ class Description {
 
 template <class N>
 NodeType Description<N>::finish() && {
-  if (type_.name.empty() || type_.summary.empty()) throw std::logic_error("a node description without type or summary");
-  if (type_.inputs.size() != detail::port_count<Arguments>)
-    throw std::logic_error(type_.name + ": fewer inputs described than the call operator takes");
-  if (type_.outputs.empty()) throw std::logic_error(type_.name + ": no output described");
+  detail::check_described(type_, Ports::kinds.size());
   type_.makes_stream = makes_stream;
-  type_.uses_random = []<class... A>(std::tuple<A...>*) {
-    return (std::is_same_v<A, Random&> || ...);
-  }(static_cast<Arguments*>(nullptr));
+  type_.uses_random = Ports::use_random;
   type_.parameters = parameters_.specs();
   auto specs = std::make_shared<const std::vector<ParameterSpec>>(type_.parameters);
   type_.make = [specs, getters = getters_](const LocatedJson* params, const Place& place, const std::string& subject,
                                            Diagnostics& diagnostics) -> std::unique_ptr<Functor> {
     N node{};
-    LocatedJson none;
-    none.kind = LocatedJson::Kind::object;
-    none.place = place;
-    detail::read_struct(params ? *params : none, &node, *specs, subject, diagnostics);
+    detail::read_parameters(params, place, &node, *specs, subject, diagnostics);
     return std::make_unique<Bound>(std::move(node), getters, specs);
   };
   return std::move(type_);

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <set>
 
+template class nlohmann::basic_json<nlohmann::ordered_map>;
+
 namespace talkgraph {
 namespace {
 

@@ -8,6 +8,9 @@
 #include <utility>
 #include <vector>
 
+// Compiled once, in json.cpp.
+extern template class nlohmann::basic_json<nlohmann::ordered_map>;
+
 namespace talkgraph {
 
 using Json = nlohmann::ordered_json;

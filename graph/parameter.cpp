@@ -96,8 +96,8 @@ void read_struct(const LocatedJson& json, void* target, const std::vector<Parame
     for (const auto& spec : specs)
       if (spec.name == member.key) {
         known = true;
-        spec.read(target, member.value, spec.range, fmt::format("{}: parameter \"{}\"", subject, spec.name),
-                  diagnostics);
+        spec.read(static_cast<std::byte*>(target) + spec.offset, member.value, spec.range,
+                  fmt::format("{}: parameter \"{}\"", subject, spec.name), diagnostics);
       }
     if (!known)
       diagnostics.error(member.key_place, fmt::format("{}: unknown parameter \"{}\"{}", subject, member.key,
@@ -109,9 +109,29 @@ void read_struct(const LocatedJson& json, void* target, const std::vector<Parame
                         fmt::format("{}: parameter \"{}\" must be given: {}", subject, spec.name, spec.doc));
 }
 
+template ParameterSpec spec_of_type<bool>();
+template ParameterSpec spec_of_type<int>();
+template ParameterSpec spec_of_type<std::int64_t>();
+template ParameterSpec spec_of_type<double>();
+template ParameterSpec spec_of_type<std::string>();
+template ParameterSpec spec_of_type<FilePath>();
+template ParameterSpec spec_of_type<Rational>();
+template ParameterSpec spec_of_type<std::vector<int>>();
+template ParameterSpec spec_of_type<std::vector<double>>();
+template ParameterSpec spec_of_type<std::vector<std::string>>();
+template ParameterSpec spec_of_type<std::vector<FilePath>>();
+
+ParameterSpec& add(std::vector<ParameterSpec>& specs, ParameterSpec spec, std::string name, const void* owner,
+                   const void* value) {
+  spec.name = std::move(name);
+  spec.offset = static_cast<const std::byte*>(value) - static_cast<const std::byte*>(owner);
+  spec.initial = spec.write(value);
+  return specs.emplace_back(std::move(spec));
+}
+
 Json write_struct(const void* target, const std::vector<ParameterSpec>& specs) {
   Json out = Json::object();
-  for (const auto& spec : specs) out[spec.name] = spec.write(target);
+  for (const auto& spec : specs) out[spec.name] = spec.write(static_cast<const std::byte*>(target) + spec.offset);
   return out;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cmath>
-#include <functional>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -60,9 +60,10 @@ struct ParameterSpec {
   Range range;
   std::vector<std::string> choices;    ///< of an enum or a variant
   std::vector<ParameterSpec> members;  ///< of a nested struct
-  /// Reads into the node; complaints start with `subject` ("node \"mfcc\": parameter \"filters\"").
-  std::function<void(void* node, const LocatedJson&, const Range&, const std::string& subject, Diagnostics&)> read;
-  std::function<Json(const void* node)> write;
+  std::ptrdiff_t offset = 0;           ///< of the parameter in its struct, bytes
+  /// Reads the parameter; complaints start with `subject` ("node \"mfcc\": parameter \"filters\"").
+  void (*read)(void* parameter, const LocatedJson&, const Range&, const std::string& subject, Diagnostics&) = nullptr;
+  Json (*write)(const void* parameter) = nullptr;
 };
 
 /// Specialised or offered as `void parameters(Parameters<T>&)` for nested structs.
@@ -213,6 +214,38 @@ Json write_parameter(const T& value) {
   }
 }
 
+/// All that follows from the type of a parameter.
+template <class T>
+ParameterSpec spec_of_type() {
+  ParameterSpec spec;
+  spec.type = parameter_type<T>();
+  spec.choices = parameter_choices<T>();
+  if constexpr (std::is_class_v<T>)
+    if constexpr (requires(Parameters<T> & p) { parameters(p); }) spec.members = struct_parameters<T>();
+  spec.read = [](void* value, const LocatedJson& json, const Range& range, const std::string& subject,
+                 Diagnostics& diagnostics) {
+    read_parameter(json, *static_cast<T*>(value), range, subject, diagnostics);
+  };
+  spec.write = [](const void* value) { return write_parameter(*static_cast<const T*>(value)); };
+  return spec;
+}
+// The usual types are compiled once, in parameter.cpp.
+extern template ParameterSpec spec_of_type<bool>();
+extern template ParameterSpec spec_of_type<int>();
+extern template ParameterSpec spec_of_type<std::int64_t>();
+extern template ParameterSpec spec_of_type<double>();
+extern template ParameterSpec spec_of_type<std::string>();
+extern template ParameterSpec spec_of_type<FilePath>();
+extern template ParameterSpec spec_of_type<Rational>();
+extern template ParameterSpec spec_of_type<std::vector<int>>();
+extern template ParameterSpec spec_of_type<std::vector<double>>();
+extern template ParameterSpec spec_of_type<std::vector<std::string>>();
+extern template ParameterSpec spec_of_type<std::vector<FilePath>>();
+
+/// Adds a parameter that lies at `value` in a struct at `owner` with the defaults.
+ParameterSpec& add(std::vector<ParameterSpec>& specs, ParameterSpec spec, std::string name, const void* owner,
+                   const void* value);
+
 }  // namespace detail
 
 /// What follows `param(...)` in a description.
@@ -238,23 +271,9 @@ class Parameters {
  public:
   template <class M>
   ParameterHandle param(std::string name, M T::*member) {
-    ParameterSpec spec;
-    spec.name = std::move(name);
-    spec.type = detail::parameter_type<M>();
-    spec.choices = detail::parameter_choices<M>();
-    spec.initial = detail::write_parameter(T{}.*member);
-    specs_.push_back(std::move(spec));
-    auto& stored = specs_.back();
-    if constexpr (std::is_class_v<M>)
-      if constexpr (requires(Parameters<M> & p) { parameters(p); }) stored.members = detail::struct_parameters<M>();
-    stored.read = [member](void* target, const LocatedJson& json, const Range& range, const std::string& subject,
-                           Diagnostics& diagnostics) {
-      detail::read_parameter(json, static_cast<T*>(target)->*member, range, subject, diagnostics);
-    };
-    stored.write = [member](const void* target) {
-      return detail::write_parameter(static_cast<const T*>(target)->*member);
-    };
-    return ParameterHandle(stored);
+    const T defaults{};
+    return ParameterHandle(
+        detail::add(specs_, detail::spec_of_type<M>(), std::move(name), &defaults, &(defaults.*member)));
   }
 
   std::vector<ParameterSpec>& specs() { return specs_; }
