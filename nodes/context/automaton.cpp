@@ -2,19 +2,10 @@
 
 #include <algorithm>
 
-#include "nodes/phones/visemes.h"
+#include "nodes/types/visemes.h"
 
 namespace talkgraph {
 namespace {
-
-constexpr int kNoViseme = -1;
-
-int viseme_of(const std::string& phone) {
-  if (phone == "sil" || phone == "breath") return 0;
-  for (const auto& entry : kVisemes)
-    if (entry.phone == phone) return entry.viseme;
-  return kNoViseme;
-}
 
 /// Index in the sorted alphabet, -1 for an unknown phone.
 std::int64_t symbol(const Vlmm& vlmm, const std::string& phone) {
@@ -27,7 +18,8 @@ std::int64_t symbol(const Vlmm& vlmm, const std::string& phone) {
 std::vector<Unit> units(const std::vector<std::string>& phones, bool runs) {
   std::vector<Unit> all;
   for (std::size_t t = 0; t < phones.size(); ++t) {
-    if (runs && !all.empty() && all.back().phone == phones[t])
+    const bool joins = runs || is_end_pause(phones[t]);
+    if (joins && !all.empty() && all.back().phone == phones[t])
       ++all.back().length;
     else
       all.push_back({phones[t], static_cast<std::int64_t>(t), 1});
@@ -64,11 +56,11 @@ std::string state_label(const Vlmm& vlmm, const std::string& context) {
     suffix.erase(0, dash + 1);
   }
   if (vlmm.trainable(suffix)) return suffix;
-  const int wanted = viseme_of(suffix);
+  const auto wanted = viseme(suffix);
   std::int64_t most = 0;
   std::string alike = suffix;
   for (const auto& phone : vlmm.alphabet) {
-    if (wanted == kNoViseme || viseme_of(phone) != wanted || vlmm.windows.at(phone) <= most) continue;
+    if (!wanted || viseme(phone) != wanted || vlmm.windows.at(phone) <= most) continue;
     most = vlmm.windows.at(phone);
     alike = phone;
   }

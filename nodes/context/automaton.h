@@ -13,7 +13,8 @@ struct Unit {
   std::int64_t start = 0, length = 1;  ///< frames
 };
 
-/// The symbols of a phone-per-frame stream: its frames, or its runs of equal frames.
+/// The symbols of a phone-per-frame stream: its frames, or its runs of equal frames. A pause at
+/// an end (is_end_pause) is always one.
 std::vector<Unit> units(const std::vector<std::string>& phones, bool runs);
 
 /// Walks the automaton along a stream of symbols, from the empty memory.
@@ -26,7 +27,8 @@ class AutomatonReader {
     double probability = 0;  ///< of the phone after that memory; 0 if there is no transition
   };
   /// Reads a phone. Without a transition for it the label is the phone alone
-  /// and the memory restarts with it; an unknown phone clears the memory.
+  /// and the memory restarts with it; an unknown phone or a pause at an end
+  /// clears the memory.
   Step read(const std::string& phone);
 
  private:

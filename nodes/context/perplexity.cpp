@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "nodes/context/automaton.h"
+#include "nodes/types/visemes.h"
 
 namespace talkgraph {
 
@@ -13,6 +14,7 @@ Table ContextPerplexity::operator()(const Vlmm& vlmm, const Collected<FrameLabel
   for (std::size_t i = 0; i < labels.size(); ++i) {
     AutomatonReader reader(vlmm);
     for (const auto& unit : units(labels[i].labels, !vlmm.repeating)) {
+      if (is_end_pause(unit.phone)) continue;
       const double p = reader.read(unit.phone).probability;
       bits -= std::log2(std::max(p, floor));
       missed += p == 0;

@@ -8,6 +8,7 @@
 
 #include "nodes/context/automaton.h"
 #include "nodes/context/prefix_tree.h"
+#include "nodes/types/visemes.h"
 
 namespace talkgraph {
 namespace {
@@ -85,7 +86,7 @@ class Learner {
   std::vector<std::int64_t> state_;  // of each node of the tree, -1 if its string is no memory
 };
 
-/// Training streams as units, and as indices into the alphabet.
+/// Training streams as units, and as indices into the alphabet, pauses at their ends by themselves.
 struct Streams {
   std::vector<std::string> alphabet;
   std::vector<std::vector<Unit>> units;
@@ -104,11 +105,16 @@ Streams read(const Collected<FrameLabels>& labels, bool runs) {
   streams.alphabet.assign(phones.begin(), phones.end());
   for (std::size_t i = 0; i < labels.size(); ++i) {
     streams.units.push_back(units(labels[i].labels, runs));
-    Symbols symbols;
-    for (const auto& unit : streams.units.back())
-      symbols.push_back(std::lower_bound(streams.alphabet.begin(), streams.alphabet.end(), unit.phone) -
-                        streams.alphabet.begin());
-    streams.symbols.push_back(std::move(symbols));
+    Symbols utterance;
+    for (const auto& unit : streams.units.back()) {
+      const auto symbol =
+          std::lower_bound(streams.alphabet.begin(), streams.alphabet.end(), unit.phone) - streams.alphabet.begin();
+      if (is_end_pause(unit.phone))
+        streams.symbols.push_back({symbol});
+      else
+        utterance.push_back(symbol);
+    }
+    streams.symbols.push_back(std::move(utterance));
   }
   return streams;
 }

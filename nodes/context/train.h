@@ -23,6 +23,9 @@ namespace talkgraph {
 /// pruning what was seen once costs 0.14. At keep = 1e-4 segments are about
 /// twice as long.
 ///
+/// Pauses at the ends of a stream (phones.mark_pauses) are labels of their own,
+/// no part of a memory.
+///
 /// Trainable are the longest suffix with at least `min_windows` windows of each
 /// label met in training, and every phone. Throws std::runtime_error if there
 /// is no frame, or a label holds '-'.

@@ -59,7 +59,12 @@ std::map<std::string, State> states_of(const Vlmm& vlmm, StateKind kind) {
   return states;
 }
 
-/// Every stretch of units that equals a label.
+bool has_lost(const Track& track, std::int64_t from, std::int64_t to) {
+  const auto first = std::lower_bound(track.lost.begin(), track.lost.end(), from);
+  return first != track.lost.end() && *first < to;
+}
+
+/// Every stretch of units that equals a label and has no lost frame.
 void add_windows(const std::vector<Sequence>& sequences, std::map<std::string, State>& states) {
   std::size_t longest = 0;
   for (const auto& [label, state] : states) longest = std::max(longest, label_phones(label).size());
@@ -71,6 +76,7 @@ void add_windows(const std::vector<Sequence>& sequences, std::map<std::string, S
       for (std::size_t first = end; first > 0 && end - first < longest; --first) {
         const Unit& oldest = parts[first - 1];
         label = oldest.phone + (label.empty() ? "" : "-") + label;
+        if (has_lost(*sequences[s].visual, oldest.start, stop)) break;
         if (const auto it = states.find(label); it != states.end())
           it->second.windows.push_back({s, oldest.start, stop - oldest.start});
       }

@@ -8,7 +8,7 @@
 
 #include "nodes/corpus/text.h"
 #include "nodes/phones/label_files.h"
-#include "nodes/phones/visemes.h"
+#include "nodes/types/visemes.h"
 
 namespace talkgraph {
 namespace {

@@ -2,16 +2,18 @@
 
 #include <string_view>
 
+#include "nodes/types/visemes.h"
+
 namespace talkgraph {
 namespace {
 
-bool is_pause(std::string_view label) { return label == "sil" || label == "breath" || label == "sp" || label.empty(); }
+bool is_silent_word(std::string_view word) { return word == "sil" || word == "sp" || word.empty(); }
 
 /// Stretches of speech in order, joined over pauses shorter than `pauses`.
-std::vector<Interval> speech(const std::vector<Interval>& intervals, double pauses) {
+std::vector<Interval> speech(const std::vector<Interval>& intervals, bool (*silent)(std::string_view), double pauses) {
   std::vector<Interval> stretches;
   for (const auto& interval : intervals) {
-    if (is_pause(interval.label)) continue;
+    if (silent(interval.label)) continue;
     if (!stretches.empty() && interval.start - stretches.back().end < pauses)
       stretches.back().end = interval.end;
     else
@@ -23,8 +25,8 @@ std::vector<Interval> speech(const std::vector<Interval>& intervals, double paus
 /// A boundary at a frame's centre belongs to what begins there, whatever the rounding.
 constexpr double kRounding = 1e-9;
 
-Mask mask(const std::vector<Interval>& intervals, double pauses, const Track& like) {
-  const auto stretches = speech(intervals, pauses);
+Mask mask(const std::vector<Interval>& intervals, bool (*silent)(std::string_view), double pauses, const Track& like) {
+  const auto stretches = speech(intervals, silent, pauses);
   Mask mask;
   std::size_t at = 0;
   for (Eigen::Index t = 0; t < like.frames(); ++t) {
@@ -40,10 +42,12 @@ constexpr std::string_view kPauses = "pauses inside speech that are shorter coun
 }  // namespace
 
 Mask SpeechMask::operator()(const PhoneTrack& phones, const Track& like) const {
-  return mask(phones.phones, pauses, like);
+  return mask(phones.phones, is_pause, pauses, like);
 }
 
-Mask WordMask::operator()(const WordTrack& words, const Track& like) const { return mask(words.words, pauses, like); }
+Mask WordMask::operator()(const WordTrack& words, const Track& like) const {
+  return mask(words.words, is_silent_word, pauses, like);
+}
 
 void describe(Description<SpeechMask>& d) {
   d.type("phones.speech_mask").summary("marks the frames whose centre lies in speech");

@@ -218,10 +218,11 @@ void SphinxAligner::Decoder::check_layout() const {
     const std::unique_ptr<ps_alignment_s, FreeAlignment> alignment(ps_alignment_init(d.d2p));
     ps_alignment_add_word(alignment.get(), word, 0);
     if (word >= 0 && ps_alignment_populate(alignment.get()) == 0 && ps_alignment_n_phones(alignment.get()) == 1) {
-      ps_search_s* search = state_align_search_init("test", d.config, d.acmod, alignment.get());
-      const SearchHead& s = head(search);
-      search_fits = s.config == d.config && s.acmod == d.acmod && s.d2p == d.d2p && s.dict == d.dict;
-      if (search_fits) s.functions->free(search);
+      if (ps_search_s* search = state_align_search_init("test", d.config, d.acmod, alignment.get())) {
+        const SearchHead& s = head(search);
+        search_fits = s.config == d.config && s.acmod == d.acmod && s.d2p == d.d2p && s.dict == d.dict;
+        if (search_fits) s.functions->free(search);
+      }
     }
   }
   if (!search_fits)

@@ -2,6 +2,7 @@
 
 #include "nodes/phones/align.h"
 #include "nodes/phones/label_frames.h"
+#include "nodes/phones/mark_pauses.h"
 #include "nodes/phones/masks.h"
 #include "nodes/phones/recognise.h"
 #include "nodes/phones/visemes.h"
@@ -14,6 +15,7 @@ void register_phones(Registry& registry) {
   registry.add<Align>();
   registry.add<Recognise>();
   registry.add<LabelFrames>();
+  registry.add<MarkPauses>();
   registry.add<SpeechMask>();
   registry.add<WordMask>();
   registry.add<ToVisemes>();

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "nodes/plot/svg.h"
+#include "nodes/types/visemes.h"
 
 namespace talkgraph {
 namespace {
@@ -52,7 +53,7 @@ Plot MeanTrajectory::operator()(const Collected<Track>& truth, const Collected<T
     const Eigen::VectorXd z = truth[i].values.col(dimension), q = p->values.col(dimension);
     for (std::size_t start = 0, end = 0; start < l->labels.size(); start = end) {
       while (end < l->labels.size() && l->labels[end] == l->labels[start]) ++end;
-      if (l->labels[start] == "sil") continue;
+      if (is_pause(l->labels[start])) continue;
       auto& average = averages[l->labels[start]];
       const double from = static_cast<double>(start) - margin, to = static_cast<double>(end) - 1 + margin;
       ++average.count;

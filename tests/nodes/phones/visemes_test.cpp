@@ -5,8 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "nodes/phones/mark_pauses.h"
 #include "nodes/phones/mouth_shapes.h"
 #include "nodes/phones/write_visemes.h"
+#include "nodes/types/visemes.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph {
@@ -24,7 +26,20 @@ TEST(Visemes, CoverCmuAndBeepInFourteenClasses) {
   EXPECT_EQ(viseme("p"), viseme("m"));
   EXPECT_EQ(viseme("ua"), 14);
   EXPECT_EQ(viseme("sil"), 0);
-  EXPECT_THROW(viseme("AA"), std::runtime_error);
+  EXPECT_EQ(viseme("lead_breath"), 0);
+  EXPECT_FALSE(viseme("AA"));
+}
+
+std::vector<std::string> marked(const std::vector<std::string>& labels) { return MarkPauses{}({labels, 30}).labels; }
+
+TEST(MarkPauses, NamesThoseAtTheEndsOnly) {
+  using Labels = std::vector<std::string>;
+  EXPECT_EQ(marked({"sil", "breath", "aa", "sil", "b", "sil"}),
+            (Labels{"lead_sil", "lead_breath", "aa", "sil", "b", "trail_sil"}));
+  EXPECT_EQ(marked({"aa"}), Labels{"aa"});
+  EXPECT_EQ(marked({"sil", "sil"}), (Labels{"lead_sil", "lead_sil"}));
+  EXPECT_EQ(marked({}), Labels{});
+  EXPECT_EQ(MarkPauses{}({{"sil"}, 30}).rate, Rational(30));
 }
 
 TEST(ToVisemes, KeepsTimes) {

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/phones.h"
+
+namespace talkgraph {
+
+/// Pauses before the first and after the last phone of an utterance get labels
+/// of their own, "lead_sil", "trail_breath" ..., so that models of their own can
+/// be learnt for them (docs/method.md §5, thesis §5.4.4). An utterance without a phone is one
+/// leading pause.
+struct MarkPauses {
+  FrameLabels operator()(const FrameLabels& labels) const;
+};
+void describe(Description<MarkPauses>& d);
+
+}  // namespace talkgraph
