@@ -17,13 +17,14 @@ double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 }
 
 /// The rows that count, of the common beginning.
-Eigen::MatrixXd marked(const Eigen::MatrixXd& values, Eigen::Index frames, const Mask* speech) {
+std::vector<Eigen::Index> counted(const Track& truth, Eigen::Index frames, const Mask* speech) {
   std::vector<Eigen::Index> rows;
   for (Eigen::Index t = 0; t < frames; ++t) {
     const auto i = static_cast<std::size_t>(t);
-    if (!speech || (i < speech->frames.size() && speech->frames[i])) rows.push_back(t);
+    const bool marked = !speech || (i < speech->frames.size() && speech->frames[i]);
+    if (marked && !truth.is_lost(t)) rows.push_back(t);
   }
-  return values(rows, Eigen::all);
+  return rows;
 }
 
 }  // namespace
@@ -39,7 +40,8 @@ std::optional<Scores> Score::operator()(const Track& truth, const Track& predict
   if (speech && std::abs(static_cast<Eigen::Index>(speech->frames.size()) - frames) > 2)
     throw std::runtime_error("speech is marked for " + std::to_string(speech->frames.size()) + " frames of " +
                              std::to_string(frames));
-  const Eigen::MatrixXd z = marked(truth.values, frames, speech), p = marked(predicted.values, frames, speech);
+  const auto rows = counted(truth, frames, speech);
+  const Eigen::MatrixXd z = truth.values(rows, Eigen::all), p = predicted.values(rows, Eigen::all);
   if (z.rows() == 0) return {};
   if (!z.allFinite() || !p.allFinite()) throw std::runtime_error("NaN or infinite values cannot be scored");
 

@@ -7,7 +7,7 @@
 namespace talkgraph {
 
 /// Scores of one sequence on the frames that `speech` marks (all if it is not
-/// given), docs/method.md §6. Tracks are normalised: a truth of zero is the mean face.
+/// given) and the truth has not lost, docs/method.md §6. Tracks are normalised: a truth of zero is the mean face.
 ///   amse        mean squared error over frames and dimensions (Eqn 6.5)
 ///   amse_share  amse / mean square of the truth: 1 is what predicting the mean (zero) gives
 ///   acc         correlation averaged over dimensions (Eqn 6.9 with standard deviations);

@@ -2,7 +2,12 @@
 
 namespace talkgraph {
 
-Track FaceParameters::operator()(const FaceTrack& track) const { return track.parameters; }
+Track FaceParameters::operator()(const FaceTrack& track) const {
+  Track parameters = track.parameters;
+  for (std::size_t t = 0; t < track.lost.size(); ++t)
+    if (track.lost[t]) parameters.lost.push_back(static_cast<std::int64_t>(t));
+  return parameters;
+}
 
 void describe(Description<FaceParameters>& d) {
   d.type("face.parameters")

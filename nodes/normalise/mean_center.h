@@ -6,15 +6,14 @@
 namespace talkgraph {
 
 /// Takes each sequence's mean off, per dimension (Eqn 3.36): over all its
-/// frames, pauses included, or over those that `usable` marks. Throws
-/// std::runtime_error on NaN, without a usable frame, and where mask and track
-/// differ by more than two frames.
+/// frames but lost ones, pauses included. Throws std::runtime_error on NaN, and
+/// where there is no frame that is not lost.
 struct MeanCenter {
   struct Out {
     Track centred;  ///< T × D
     Track mean;     ///< 1 × D
   };
-  Out operator()(const Track& track, const Mask* usable) const;
+  Out operator()(const Track& track) const;
 };
 void describe(Description<MeanCenter>& d);
 

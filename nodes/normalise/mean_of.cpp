@@ -18,6 +18,7 @@ Track MeanOf::operator()(const Collected<Track>& tracks) const {
   }
   if (rows == 0) throw std::runtime_error("the mean of tracks without frames");
   out.values = sum / static_cast<double>(rows);
+  out.lost.clear();
   return out;
 }
 

@@ -21,6 +21,7 @@ void fields(Archive& ar, Track& t) {
   ar("rate", t.rate);
   ar("start", t.start);
   ar("names", t.names);
+  ar("lost", t.lost);
 }
 
 void fields(Archive& ar, Mask& m) { ar("frames", m.frames); }

@@ -13,8 +13,11 @@ MeanModel MeanTrain::operator()(const Collected<Track>& visual) const {
       throw std::runtime_error(visual.key(i) + ": " + std::to_string(visual[i].dimension()) +
                                " dimensions, others have " + std::to_string(sum.size()));
     if (!visual[i].values.allFinite()) throw std::runtime_error(visual.key(i) + ": NaN or infinite values");
-    sum += visual[i].values.colwise().sum();
-    frames += visual[i].frames();
+    for (Eigen::Index t = 0; t < visual[i].frames(); ++t) {
+      if (visual[i].is_lost(t)) continue;
+      sum += visual[i].values.row(t);
+      ++frames;
+    }
   }
   if (frames == 0) throw std::runtime_error("the mean of tracks without frames");
   return {sum / static_cast<double>(frames)};

@@ -75,10 +75,16 @@ StackedTraining stack_training(const Collected<Track>& audio, const Collected<Tr
   out.visual.resize(total, pairs[0].visual->dimension());
   Eigen::Index at = 0;
   for (const auto& p : pairs) {
-    out.audio.middleRows(at, p.frames) = stacked(out.inputs, *p.audio).topRows(p.frames);
-    out.visual.middleRows(at, p.frames) = p.visual->values.topRows(p.frames);
-    at += p.frames;
+    const Eigen::MatrixXd audio_rows = stacked(out.inputs, *p.audio);
+    for (Eigen::Index t = 0; t < p.frames; ++t) {
+      if (p.visual->is_lost(t)) continue;
+      out.audio.row(at) = audio_rows.row(t);
+      out.visual.row(at++) = p.visual->values.row(t);
+    }
   }
+  out.audio.conservativeResize(at, Eigen::NoChange);
+  out.visual.conservativeResize(at, Eigen::NoChange);
+  if (at == 0) throw std::runtime_error("no training frame that is not lost");
   return out;
 }
 

@@ -70,6 +70,16 @@ TEST(Score, CountsSpeechFramesOnly) {
   EXPECT_FALSE(Score{}(track(z), track(p), &silence));
 }
 
+TEST(Score, LeavesLostFramesOfTheTruthOut) {
+  Track truth, predicted;
+  truth.values = Eigen::Vector3d(1, 500, -1);
+  predicted.values = Eigen::Vector3d(1, 0, -1);
+  truth.lost = {1};
+  EXPECT_EQ(Score{}(truth, predicted, nullptr)->values.at("amse"), 0);
+  truth.lost = {0, 1, 2};
+  EXPECT_FALSE(Score{}(truth, predicted, nullptr));
+}
+
 TEST(Score, RefusesWhatDoesNotFit) {
   const auto zeros = [](int r, int c) { return track(Eigen::MatrixXd::Zero(r, c)); };
   EXPECT_NO_THROW(Score{}(zeros(10, 2), zeros(12, 2), nullptr));

@@ -5,6 +5,8 @@
 #include "nodes/face/build.h"
 #include "nodes/face/fit.h"
 #include "nodes/face/geometry.h"
+#include "nodes/face/landmarks.h"
+#include "nodes/face/parameters.h"
 #include "synthetic_face.h"
 
 namespace talkgraph {
@@ -83,6 +85,18 @@ TEST(TrackFace, BridgesADamagedFrame) {
               1e-12);
     EXPECT_NEAR(t.poses[4].dx, 0.5 * (t.poses[3].dx + t.poses[5].dx), 1e-12);
   }
+}
+
+TEST(FaceTrack, GivesItsParametersWithLostFramesAndItsLandmarks) {
+  auto frames = talking(4);
+  frames[2].setTo(cv::Scalar(128, 128, 128));
+  const auto t = track(video_from_frames(frames, Rational(25)));
+  EXPECT_EQ(FaceParameters{}(t).lost, (std::vector<std::int64_t>{2}));
+  EXPECT_EQ(FaceParameters{}(t).values, t.parameters.values);
+  const auto landmarks = FaceLandmarks{}(t);
+  EXPECT_EQ(landmarks.rate, Rational(25));
+  ASSERT_EQ(landmarks.frames.size(), 4u);
+  EXPECT_EQ(landmarks.frames[3], t.shapes[3]);
 }
 
 TEST(TrackFace, CopiesIntoLostEnds) {

@@ -16,26 +16,26 @@ Track track(Eigen::MatrixXd values) {
 
 TEST(MeanCenter, TakesTheMeanOffAndRestorePutsItBack) {
   const Track t = track(Eigen::MatrixXd::Random(7, 3));
-  const auto out = MeanCenter{}(t, nullptr);
+  const auto out = MeanCenter{}(t);
   EXPECT_LT(out.centred.values.colwise().mean().cwiseAbs().maxCoeff(), 1e-15);
   EXPECT_TRUE(Restore{}(out.centred, out.mean).values.isApprox(t.values, 1e-14));
 }
 
-TEST(MeanCenter, CountsOnlyUsableFrames) {
-  const Track t = track(Eigen::Vector3d(1, 3, 100));
-  const Mask usable{{1, 1, 0}};
-  EXPECT_EQ(MeanCenter{}(t, &usable).mean.values(0, 0), 2);
-  EXPECT_EQ(MeanCenter{}(t, &usable).centred.values(2, 0), 98);
-  const Mask none{{0, 0, 0}};
-  EXPECT_THROW(MeanCenter{}(t, &none), std::runtime_error);
-  EXPECT_THROW(MeanCenter{}(Track{}, nullptr), std::runtime_error);
+TEST(MeanCenter, LeavesLostFramesOutOfTheMean) {
+  Track t = track(Eigen::Vector3d(1, 3, 100));
+  t.lost = {2};
+  const auto out = MeanCenter{}(t);
+  EXPECT_EQ(out.mean.values(0, 0), 2);
+  EXPECT_EQ(out.centred.values(2, 0), 98);
+  EXPECT_EQ(out.centred.lost, t.lost);
+  EXPECT_TRUE(out.mean.lost.empty());
+  t.lost = {0, 1, 2};
+  EXPECT_THROW(MeanCenter{}(t), std::runtime_error);
 }
 
-TEST(MeanCenter, RefusesNanAndMasksThatDoNotFit) {
-  const Mask usable{{1, 1, 1, 1}};
-  EXPECT_EQ(MeanCenter{}(track(Eigen::VectorXd::Ones(5)), &usable).mean.values(0, 0), 1);
-  EXPECT_THROW(MeanCenter{}(track(Eigen::VectorXd::Ones(7)), &usable), std::runtime_error);
-  EXPECT_THROW(MeanCenter{}(track(Eigen::Vector2d(1, NAN)), nullptr), std::runtime_error);
+TEST(MeanCenter, RefusesNanAndNoFrames) {
+  EXPECT_THROW(MeanCenter{}(Track{}), std::runtime_error);
+  EXPECT_THROW(MeanCenter{}(track(Eigen::Vector2d(1, NAN))), std::runtime_error);
 }
 
 TEST(Restore, RefusesAMeanThatDoesNotFit) {

@@ -7,6 +7,7 @@
 #include "nodes/yardstick/mean.h"
 #include "nodes/yardstick/neighbours.h"
 #include "nodes/yardstick/ridge.h"
+#include "nodes/yardstick/stacked.h"
 
 namespace talkgraph {
 namespace {
@@ -91,6 +92,19 @@ TEST(Yardsticks, PairByKeyAndUseTheCommonBeginning) {
                                         {{"x", track(v)}, {"neither", track(Eigen::MatrixXd::Zero(3, 1))}});
   EXPECT_EQ(model.audio.rows(), 18);
   EXPECT_EQ(model.visual, v);
+}
+
+TEST(Yardsticks, LearnNothingFromLostFrames) {
+  Track audio, visual;
+  audio.values = Eigen::VectorXd::LinSpaced(4, 0, 3);
+  visual.values = Eigen::Vector4d(1, 3, 1000, 5);
+  visual.lost = {2};
+  EXPECT_EQ(MeanTrain{}({{"u", visual}}).mean(0), 3);
+  const auto training = stack_training({{"u", audio}}, {{"u", visual}}, 0);
+  EXPECT_EQ(training.visual, Eigen::Vector3d(1, 3, 5));
+  visual.lost = {0, 1, 2, 3};
+  EXPECT_THROW(stack_training({{"u", audio}}, {{"u", visual}}, 0), std::runtime_error);
+  EXPECT_THROW(MeanTrain{}({{"u", visual}}), std::runtime_error);
 }
 
 TEST(Yardsticks, RefuseNanAndOtherDimensions) {
