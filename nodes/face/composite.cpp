@@ -179,6 +179,7 @@ struct Plan {
   Track parameters;
   BaseClip base;
   Run run;
+  bool loops = false;  ///< the run is too short, so it goes back and forth
   std::string settings;
 
   std::int64_t base_frame(std::int64_t t) const {
@@ -203,21 +204,21 @@ class CompositeReader final : public VideoSource::Reader {
   }
 
  private:
-  /// Frames stay in memory, as the base may run backwards later on.
   const cv::Mat& picture(std::int64_t t) {
-    while (static_cast<std::int64_t>(frames_.size()) <= t) {
-      cv::Mat frame;
-      if (!base_->next(frame))
+    while (read_ <= t) {
+      if (!base_->next(frame_))
         throw std::runtime_error(plan_->base.frames.source->name() + " ends before frame " + std::to_string(t));
-      frames_.push_back(frame.clone());
+      if (plan_->loops && read_ >= plan_->run.first) run_.push_back(frame_.clone());
+      ++read_;
     }
-    return frames_[static_cast<std::size_t>(t)];
+    return plan_->loops ? run_[static_cast<std::size_t>(t - plan_->run.first)] : frame_;
   }
 
   std::shared_ptr<const Plan> plan_;
   std::unique_ptr<VideoSource::Reader> base_;
-  std::vector<cv::Mat> frames_;
-  std::int64_t at_ = 0;
+  cv::Mat frame_;             // the last one read
+  std::vector<cv::Mat> run_;  // kept where the base runs backwards later on
+  std::int64_t read_ = 0, at_ = 0;
 };
 
 class CompositeSource final : public VideoSource {
@@ -247,6 +248,16 @@ class CompositeSource final : public VideoSource {
   std::shared_ptr<const Plan> plan_;
 };
 
+/// A run that must go back and forth is kept in memory, so it is not a long one.
+void limit_run(Plan& plan) {
+  constexpr double longest = 10;  // seconds
+  const double base_rate = plan.base.frames.source->rate().value();
+  const double needed = static_cast<double>(plan.parameters.frames()) / plan.parameters.rate.value() * base_rate;
+  plan.loops = needed > static_cast<double>(plan.run.length);
+  if (plan.loops)
+    plan.run.length = std::min(plan.run.length, static_cast<std::int64_t>(std::ceil(longest * base_rate)));
+}
+
 }  // namespace
 
 Video CompositeFace::operator()(const AppearanceModel& model, const Track& parameters, const BaseClip& base) const {
@@ -261,6 +272,7 @@ Video CompositeFace::operator()(const AppearanceModel& model, const Track& param
   plan->run = longest_good_run(base.track);
   plan->settings = std::to_string(static_cast<int>(part)) + " " + std::to_string(blend_from) + " " +
                    std::to_string(blend_to) + " " + std::to_string(feather);
+  limit_run(*plan);
   if (plan->run.length == 0)
     throw std::runtime_error(
         base.frames.source->name() +
