@@ -23,11 +23,11 @@ class Connector {
 
   std::optional<Graph> run() {
     for (const auto& made : draft_.nodes) nodes_.push_back({made.name, made.type, made.functor, {}, -1, made.place});
+    unsure_.assign(nodes_.size(), false);
     for (std::size_t i = 0; i < nodes_.size(); ++i) wire(i);
     const auto outputs = wire_outputs();
-    if (!diagnostics_.ok()) return {};
-    if (!sort()) return {};
-    for (const int i : order_) find_domain(i);
+    sort();
+    find_domains();
     if (!diagnostics_.ok()) return {};
     Graph graph = assemble(outputs);
     if (!graph.nodes.empty()) return graph;
@@ -48,12 +48,17 @@ class Connector {
       const auto& spec = made.type->inputs[p];
       const auto* given = in ? in->value.find(spec.name) : nullptr;
       if (!given) {
-        if (spec.kind != PortSpec::Kind::optional)
+        if (spec.kind != PortSpec::Kind::optional) {
           diagnostics_.error(made.place, fmt::format("node \"{}\": input \"{}\" ({}) is not wired", made.name,
                                                      spec.name, spec.type.name));
+          unsure_[index] = true;
+        }
         continue;
       }
-      nodes_[index].inputs[p] = wire_port(made, spec, given->value);
+      const auto complaints = diagnostics_.messages().size();
+      auto& wire = nodes_[index].inputs[p] = wire_port(made, spec, given->value);
+      const bool open = wire.sources.empty() && spec.kind != PortSpec::Kind::optional;
+      if (open || diagnostics_.messages().size() > complaints) unsure_[index] = true;
     }
   }
 
@@ -217,32 +222,45 @@ class Connector {
     return outputs;
   }
 
-  /// Depth-first topological order, in file order where that is free; reports a cycle.
-  bool sort() {
-    std::vector<int> state(nodes_.size(), 0), path;
-    bool ok = true;
+  /// Depth-first topological order, in file order where that is free; reports cycles.
+  void sort() {
+    enum class State { unseen, open, done };
+    std::vector<State> state(nodes_.size(), State::unseen);
+    std::vector<int> path;
     const std::function<void(int)> visit = [&](int i) {
       auto& s = state[static_cast<std::size_t>(i)];
-      if (s == 2 || !ok) return;
-      if (s == 1) {
-        std::string round;
-        for (auto it = std::find(path.begin(), path.end(), i); it != path.end(); ++it)
-          round += nodes_[static_cast<std::size_t>(*it)].name + " <- ";
-        const auto& node = nodes_[static_cast<std::size_t>(i)];
-        diagnostics_.error(node.place, fmt::format("these nodes form a cycle: {}{}", round, node.name));
-        ok = false;
-        return;
-      }
-      s = 1;
+      if (s == State::done) return;
+      if (s == State::open) return complain_cycle(std::find(path.begin(), path.end(), i), path.end());
+      s = State::open;
       path.push_back(i);
       for (const auto& wire : nodes_[static_cast<std::size_t>(i)].inputs)
         for (const auto& source : wire.sources) visit(source.node);
       path.pop_back();
-      state[static_cast<std::size_t>(i)] = 2;
+      state[static_cast<std::size_t>(i)] = State::done;
       order_.push_back(i);
     };
     for (std::size_t i = 0; i < nodes_.size(); ++i) visit(static_cast<int>(i));
-    return ok;
+  }
+
+  void complain_cycle(std::vector<int>::const_iterator first, std::vector<int>::const_iterator last) {
+    const auto& node = nodes_[static_cast<std::size_t>(*first)];
+    std::string round;
+    for (; first != last; ++first) {
+      round += nodes_[static_cast<std::size_t>(*first)].name + " <- ";
+      unsure_[static_cast<std::size_t>(*first)] = true;
+    }
+    diagnostics_.error(node.place, fmt::format("these nodes form a cycle: {}{}", round, node.name));
+  }
+
+  /// Of every node but those behind a wire that could not be drawn.
+  void find_domains() {
+    for (const int i : order_) {
+      const auto at = static_cast<std::size_t>(i);
+      for (const auto& wire : nodes_[at].inputs)
+        for (const auto& source : wire.sources)
+          if (unsure_[static_cast<std::size_t>(source.node)]) unsure_[at] = true;
+      if (!unsure_[at]) find_domain(i);
+    }
   }
 
   int output_domain(const Graph::Port& p) const {
@@ -356,6 +374,7 @@ class Connector {
   Diagnostics& diagnostics_;
   std::vector<Graph::Node> nodes_;
   std::vector<int> order_;
+  std::vector<bool> unsure_;  ///< nodes whose domain cannot be known, as a wire before them is wrong
 };
 
 }  // namespace

@@ -199,6 +199,22 @@ TEST_F(Load, ReportsEverythingInOneGo) {
   EXPECT_EQ(diagnostics.messages().size(), 3u) << diagnostics.str();
 }
 
+TEST_F(Load, ReportsCyclesAndDomainsBesideOtherErrors) {
+  load(R"({ "nodes": {
+    "a": { "type": "toy.add", "in": { "a": "b" } }, "b": { "type": "toy.add", "in": { "a": "a" } },
+    "c": { "type": "toy.add", "in": { "a": "d" } }, "d": { "type": "toy.add", "in": { "a": "c" } },
+    "behind": { "type": "toy.sum", "in": { "all": "a" } },
+    "x": { "type": "toy.count" }, "y": { "type": "toy.count" },
+    "z": { "type": "toy.add", "in": { "a": "x", "b": "y" } },
+    "w": { "type": "toy.cuont" }, "v": { "type": "toy.sum", "in": { "all": "w" } } } })");
+  const std::string all = diagnostics.str();
+  EXPECT_EQ(diagnostics.messages().size(), 4u) << all;
+  EXPECT_THAT(all, HasSubstr("form a cycle: a <- b <- a"));
+  EXPECT_THAT(all, HasSubstr("form a cycle: c <- d <- c"));
+  EXPECT_THAT(all, HasSubstr("come from different streams"));
+  EXPECT_THAT(all, HasSubstr("toy.cuont"));
+}
+
 TEST_F(Load, RefusesAGraphThatContainsItself) {
   write("loop.json", R"({ "nodes": { "a": { "graph": "loop.json" } } })");
   expect_error(R"({ "nodes": { "l": { "graph": "loop.json" } } })", "loop.json:1:30", "contains itself");
