@@ -36,28 +36,14 @@ void check(const StateData& data) {
   }
 }
 
-/// Windows at even distances that together have at most `most` frames, at least one window.
-std::vector<std::size_t> chosen_windows(const StateData& data, std::int64_t most) {
-  std::int64_t total = 0;
-  for (const auto& w : data.audio) total += w.rows();
-  const std::size_t all = data.audio.size();
-  std::size_t keep = all;
-  if (total > most)
-    keep = std::max<std::size_t>(1, all * static_cast<std::size_t>(most) / static_cast<std::size_t>(total));
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < keep; ++i) chosen.push_back(i * all / keep);
-  return chosen;
-}
-
-Frames stacked(const StateData& data, std::int64_t most) {
-  const auto chosen = chosen_windows(data, most);
+Frames stacked(const StateData& data) {
   Frames f;
   Eigen::Index n = 0;
-  for (const auto i : chosen) n += data.audio[i].rows();
+  for (const auto& window : data.audio) n += window.rows();
   f.audio.resize(n, data.audio[0].cols());
   f.visual.resize(n, data.visual[0].cols());
   Eigen::Index row = 0;
-  for (const auto i : chosen) {
+  for (std::size_t i = 0; i < data.audio.size(); ++i) {
     f.audio.middleRows(row, data.audio[i].rows()) = data.audio[i];
     f.visual.middleRows(row, data.visual[i].rows()) = data.visual[i];
     f.lengths.push_back(data.audio[i].rows());
@@ -123,7 +109,7 @@ Eigen::MatrixXd inputs_of_steps(const Eigen::MatrixXd& x, const std::vector<std:
 
 Sgpdm TrainSgpdm::operator()(const StateData& data, Context& context) const {
   check(data);
-  Frames frames = stacked(data, max_frames);
+  Frames frames = stacked(data);
   const Scaled audio = scaled_by(audio_scaling, frames.audio), visual = scaled_by(visual_scaling, frames.visual);
   const Eigen::Index n = audio.values.rows(), dy = audio.values.cols(), dz = visual.values.cols();
   const Eigen::Index d = std::max<Eigen::Index>(1, std::min<Eigen::Index>({latent_dimension, dy, dz, n - 1}));
@@ -209,7 +195,6 @@ void describe(Description<TrainSgpdm>& d) {
   d.param("approximation", &TrainSgpdm::approximation).doc("of covariances of more frames than inducing points");
   d.param("inducing", &TrainSgpdm::inducing).at_least(1).doc("inducing points of each process");
   d.param("iterations", &TrainSgpdm::iterations).at_least(0).doc("limit of scaled conjugate gradients");
-  d.param("max_frames", &TrainSgpdm::max_frames).at_least(1).doc("more windows than fit are thinned out evenly");
   d.param("initial", &TrainSgpdm::initial).doc("start values of the latent points");
   d.param("audio_scaling", &TrainSgpdm::audio_scaling);
   d.param("visual_scaling", &TrainSgpdm::visual_scaling)

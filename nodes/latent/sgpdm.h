@@ -50,18 +50,17 @@ inline constexpr EnumNames<LatentStart, 2> enum_names<LatentStart>{
 /// or dimension, or values that are not finite; std::invalid_argument if
 /// `fixed` names an unknown parameter.
 struct TrainSgpdm {
-  int latent_dimension = 5;
+  int latent_dimension = 3;
   CovarianceApproximation approximation = CovarianceApproximation::fitc;
   int inducing = 100;
   int iterations = 20;
-  int max_frames = 1000;
   LatentStart initial = LatentStart::pcca;
   OutputScaling audio_scaling = OutputScaling::per_dimension;
   OutputScaling visual_scaling = OutputScaling::per_dimension;
   bool dynamics = true;
   bool likelihood_bias = true;
   bool dynamics_bias = true;
-  double first_variance = 1;
+  double first_variance = 0.1;
   double dynamics_inverse_width = 1;
   double noise = 0.5;
   double minimum_noise = 1e-3;

@@ -147,6 +147,11 @@ Track track_like(const Track& audio, Eigen::Index frames, Eigen::Index dims) {
 
 }  // namespace
 
+Eigen::MatrixXd segment_latents(const SynthesiseSsgpdm& search, const Sgpdm& state, const Eigen::MatrixXd& audio,
+                                const Boundary& before) {
+  return SegmentSearch(search, state, audio, before).latents();
+}
+
 SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Track& audio,
                                                    const SegmentTrack& segments, Context& context) const {
   check(model, audio, segments);
@@ -162,7 +167,7 @@ SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Tr
     Boundary before;
     if (segment.start > 0) before = scaled(state.visual, out.visual.values.row(segment.start - 1));
     const Eigen::MatrixXd scaled_audio = scaled(state.audio, heard);
-    visual.compute(state.visual, SegmentSearch(*this, state, scaled_audio, before).latents());
+    visual.compute(state.visual, segment_latents(*this, state, scaled_audio, before));
     out.visual.values.middleRows(segment.start, length) = unscaled(state.visual, visual.mean());
     out.deviation.values.middleRows(segment.start, length) = visual.variance().cwiseSqrt() * state.visual.scale;
     context.progress(static_cast<double>(segment.start + length) / static_cast<double>(frames));

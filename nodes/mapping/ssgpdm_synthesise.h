@@ -50,4 +50,9 @@ struct SynthesiseSsgpdm {
 };
 void describe(Description<SynthesiseSsgpdm>& d);
 
+/// The latent points that a search finds for one segment (T × d). `audio` is T × D_Y, scaled as
+/// the state's; `before` the last visual frame before the segment, scaled likewise, if there is one.
+Eigen::MatrixXd segment_latents(const SynthesiseSsgpdm& search, const Sgpdm& state, const Eigen::MatrixXd& audio,
+                                const std::optional<Eigen::RowVectorXd>& before);
+
 }  // namespace talkgraph

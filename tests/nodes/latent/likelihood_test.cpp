@@ -87,7 +87,7 @@ TEST(Predictive, IsTheClosedFormOfTheFullProcess) {
   FullLikelihood full;
   Predictive predictive;
   predictive.compute(full.posterior(observation, x, x, y), at);
-  const Eigen::MatrixXd inverse = testing::textbook_full(observation, x).inverse();
+  const Eigen::MatrixXd inverse = testing::textbook_inverse(testing::textbook_full(observation, x));
   const Eigen::MatrixXd k = testing::textbook_matrix(observation, at, x);
   EXPECT_TRUE(predictive.mean().isApprox(k * inverse * y, 1e-10));
   const Eigen::VectorXd variance =
@@ -100,7 +100,8 @@ TEST(Predictive, OfFitcIsTheConditionalOfItsJointDensity) {
   Eigen::MatrixXd all(12, 2);
   all << x, at;
   const Eigen::MatrixXd joint = testing::textbook_fitc(observation, all, u, 1e-6);
-  const Eigen::MatrixXd inverse = joint.topLeftCorner(9, 9).inverse(), cross = joint.bottomLeftCorner(3, 9);
+  const Eigen::MatrixXd inverse = testing::textbook_inverse(joint.topLeftCorner(9, 9)),
+                        cross = joint.bottomLeftCorner(3, 9);
   FitcLikelihood fitc;
   Predictive predictive;
   predictive.compute(fitc.posterior(observation, x, u, y), at);

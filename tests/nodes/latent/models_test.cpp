@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+
 #include "nodes/latent/linear_models.h"
 #include "nodes/latent/scg.h"
-#include "tests/nodes/latent/textbook.h"
+#include "tests/nodes/latent/gaussian.h"
 
 namespace talkgraph {
 namespace {

@@ -206,17 +206,6 @@ TEST(TrainSgpdm, AnswersDegenerateData) {
   expect_usable(train(column, context));
 }
 
-TEST(TrainSgpdm, ThinsWindowsOutToTheFrameLimit) {
-  Context context;
-  TrainSgpdm train;
-  train.max_frames = 21;
-  train.iterations = 2;
-  const Sgpdm model = train(wavy(20, 4), context);
-  EXPECT_EQ(model.lengths, std::vector<std::int64_t>(5, 4));
-  train.max_frames = 1;
-  EXPECT_EQ(train(wavy(20, 4), context).lengths.size(), 1u);
-}
-
 TEST(TrainSgpdm, RefusesWhatItCannotTrainOn) {
   Context context;
   const TrainSgpdm train;
