@@ -6,8 +6,10 @@
 #include "cli/registry.h"
 #include "cli/run.h"
 #include "cli/speak.h"
+#include "nodes/media/audio_file.h"
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/video_file.h"
+#include "nodes/voice/voice.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
@@ -49,6 +51,17 @@ TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
   EXPECT_GT(clip.source->frames(), 25);
   EXPECT_EQ(clip.source->frames(), static_cast<std::int64_t>(clip.read_all().size()));
   EXPECT_NE(temporary.read("run/said.tsv").find("\tA\n"), std::string::npos) << "lips close on b and m";
+
+  write_audio(temporary.path() / "a.wav", talkgraph::speak(words.text, {}).audio);
+  SpeakCommand several = words;
+  several.text.clear();
+  several.files = {(temporary.path() / "a.wav").string(), temporary.write("b.wav", "no sound")};
+  several.transcripts = {temporary.write("a.txt", words.text), "nothing"};
+  several.output = temporary.path() / "clips";
+  several.visemes.clear();
+  EXPECT_EQ(speak(several, registry), failed);
+  EXPECT_EQ(open_video((several.output / "a.mp4").string()).source->frames(), clip.source->frames());
+  EXPECT_FALSE(fs::exists(several.output / "b.mp4"));
 }
 
 TEST(EndToEnd, RefusesAFolderThatCannotBeWritten) {

@@ -1,5 +1,6 @@
 #include "cli/speak.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -10,6 +11,8 @@
 
 namespace talkgraph::cli {
 namespace {
+
+using testing::HasSubstr;
 
 std::string complaint(const SpeakCommand& command) {
   try {
@@ -36,6 +39,26 @@ TEST(Speak, SaysWhatIsMissingOrTooMuch) {
   EXPECT_EQ(complaint(c), "clip.avi: the name must end in .mp4 or .webm");
   c.output.clear();
   EXPECT_EQ(complaint(c), "say where to write: -o clip.mp4, --visemes FILE, or both");
+}
+
+TEST(Speak, ChecksWhereItIsToWriteBeforeAnythingElse) {
+  const test::TemporaryFolder folder;
+  SpeakCommand one;
+  one.model = "model.h5";
+  one.files = {"a.wav"};
+  one.output = folder.path();
+  EXPECT_THAT(complaint(one), HasSubstr("the name must end in .mp4 or .webm"));
+  one.output = folder.path() / "CLIP.MP4";
+  EXPECT_THAT(complaint(one), HasSubstr("model.h5: there is no such model file"));
+  one.visemes = "mouth.txt";
+  EXPECT_EQ(complaint(one), "mouth.txt: the name must end in .json or .tsv");
+
+  SpeakCommand several = one;
+  several.visemes.clear();
+  several.files = {"a.wav", "b.wav"};
+  EXPECT_THAT(complaint(several), HasSubstr("several recordings go to a folder"));
+  several.output = folder.write("file", "");
+  EXPECT_THAT(complaint(several), HasSubstr("is a file; several recordings go to a folder"));
 }
 
 TEST(Speak, RefusesFilesThatAreNoModels) {
