@@ -88,6 +88,12 @@ std::vector<std::string> settings(const SpeakCommand& command) {
         set("nodes.base", {{"type", "face.base_clip"}, {"in", {{"video", "base_video"}, {"track", "base_track"}}}}));
     sets.push_back(set("nodes.composite.in.base", "base"));
   }
+  const auto leave_out = [&](const std::string& node, const std::string& output) {
+    sets.push_back(set("nodes." + node, nullptr));
+    sets.push_back(set("outputs." + output, nullptr));
+  };
+  if (command.output.empty()) leave_out("encode", "clips");
+  if (command.visemes.empty()) leave_out("visemes", "visemes");
   if (ending(command.output) == ".webm") sets.push_back(set("nodes.encode.params.format", "webm"));
   if (ending(command.visemes) == ".json") sets.push_back(set("nodes.visemes.params.format", "json"));
   sets.insert(sets.end(), command.sets.begin(), command.sets.end());

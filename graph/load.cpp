@@ -329,6 +329,12 @@ void Loader::add_graph_inputs() {
   }
 }
 
+/// Whether a path names what null takes away: a node, a wire, an output.
+bool can_be_taken_away(const std::vector<std::string>& path) {
+  const bool named = path.size() == 2 && (path[0] == "nodes" || path[0] == "outputs");
+  return named || (path.size() == 4 && path[0] == "nodes" && path[2] == "in");
+}
+
 /// Applies "path=value" to a graph's text before anything is read from it.
 void apply_set(LocatedJson& json, const std::string& set, Diagnostics& diagnostics) {
   const auto equals = set.find('=');
@@ -356,7 +362,7 @@ void apply_set(LocatedJson& json, const std::string& set, Diagnostics& diagnosti
           place, fmt::format("--set: the graph has no parameter \"{}\"{}", parts[0], did_you_mean(parts[0], known)));
     parts = {"parameters", parts[0], "default"};
   }
-  LocatedJson* at = &json;
+  LocatedJson *at = &json, *parent = nullptr;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!at->is(Kind::object))
       return diagnostics.error(place, fmt::format("--set: nothing can be set below \"{}\"", parts[i - 1]));
@@ -375,9 +381,13 @@ void apply_set(LocatedJson& json, const std::string& set, Diagnostics& diagnosti
       at->members.push_back({parts[i], place, empty});
       member = &at->members.back();
     }
+    parent = at;
     at = &member->value;
   }
-  *at = located(value, place);
+  if (value.is_null() && can_be_taken_away(parts))
+    std::erase_if(parent->members, [&](const LocatedJson::Member& m) { return m.key == parts.back(); });
+  else
+    *at = located(value, place);
 }
 
 }  // namespace

@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "nodes/media/check_video.h"
-
 namespace talkgraph {
 namespace {
 
@@ -55,7 +53,6 @@ RecordingParts Parts::operator()(const Recording& recording, Context& context) c
   parts.video = recording.video();
   check_rate(*parts.video->source, fps);
   if (!check) return parts;
-  parts.video = CheckVideo{}(*parts.video, context);
   const VideoSource& source = *parts.video->source;
   if (parts.landmarks) check_landmarks(*parts.landmarks, source);
   compare(static_cast<double>(source.frames()) / source.rate().value(), "picture");
@@ -66,14 +63,15 @@ void describe(Description<Parts>& d) {
   d.type("corpus.parts").summary("takes a recording apart: sound, pictures, labels");
   d.input("recording");
   d.output("audio", &RecordingParts::audio);
-  d.output("video", &RecordingParts::video, "damaged frames marked");
+  d.output("video", &RecordingParts::video);
   d.output("transcript", &RecordingParts::transcript);
   d.output("words", &RecordingParts::words);
   d.output("phones", &RecordingParts::phones);
   d.output("landmarks", &RecordingParts::landmarks);
   d.output("visual", &RecordingParts::visual, "ready-made visual track");
   d.param("fps", &Parts::fps).unit("frames/s").doc("rate that pictures must have; 0: any");
-  d.param("check", &Parts::check).doc("decodes the video once to find damaged frames; off where only sound is used");
+  d.param("check", &Parts::check)
+      .doc("counts the frames, for which the video is decoded once; off where only sound is used");
   d.param("tolerance", &Parts::tolerance).positive().unit("s").doc("difference of sound and picture that is warned of");
 }
 

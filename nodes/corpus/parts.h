@@ -18,10 +18,9 @@ struct RecordingParts {
   std::optional<Track> visual;
 };
 
-/// Takes a recording apart: reads its sound, opens its video. With `check` it decodes the
-/// video once: damaged frames are marked (media.check_video), landmarks must be as many as
-/// frames (give or take 2), and of a sound that differs from the picture in length by more
-/// than `tolerance` the user is warned. Throws std::runtime_error if not, if pictures have
+/// Takes a recording apart: reads its sound, opens its video. With `check` its frames are
+/// counted: landmarks must be as many (give or take 2), and of a sound that differs from the
+/// picture in length by more than `tolerance` the user is warned. Throws std::runtime_error if not, if pictures have
 /// another rate than `fps`, or if labels end far from the end of the sound, as they do in
 /// another unit.
 struct Parts {

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "nodes/types/visemes.h"
+
 namespace talkgraph {
 
 std::optional<Scores> Seams::operator()(const Track& track, const SegmentTrack& segments) const {
@@ -10,12 +12,14 @@ std::optional<Scores> Seams::operator()(const Track& track, const SegmentTrack& 
                              std::to_string(segments.frames));
   double at_seams = 0, inside = 0;
   int seams = 0, steps = 0;
-  for (const auto& s : segments.segments)
-    for (auto t = std::max<std::int64_t>(s.start, 1); t < s.start + s.length && t < track.values.rows(); ++t) {
+  for (const auto& s : segments.segments) {
+    const auto end = is_end_pause(s.label) ? s.start + 1 : s.start + s.length;
+    for (auto t = std::max<std::int64_t>(s.start, 1); t < end && t < track.values.rows(); ++t) {
       const double step = (track.values.row(t) - track.values.row(t - 1)).norm();
       (t == s.start ? at_seams : inside) += step;
       ++(t == s.start ? seams : steps);
     }
+  }
   if (seams == 0 || steps == 0 || inside == 0) return {};
   return Scores{{{"step", (at_seams / seams) / (inside / steps)}}};
 }

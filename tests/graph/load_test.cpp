@@ -57,6 +57,17 @@ TEST_F(Load, SortsNodesAndFindsDomains) {
   EXPECT_EQ(graph->nodes[0].functor->parameters()["to"], 4);
 }
 
+TEST_F(Load, NullTakesNodesWiresAndOutputsAway) {
+  const std::string text = R"({ "nodes": { "a": { "type": "toy.count" }, "b": { "type": "toy.count" },
+    "c": { "type": "toy.add", "in": { "a": "a", "b": "a" } } }, "outputs": { "x": "c", "y": "b" } })";
+  const auto graph = load(text, {"nodes.b=null", "outputs.y=null", "nodes.c.in.b=null"});
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_EQ(graph->outputs.size(), 1u);
+  EXPECT_FALSE(graph->resolved["nodes"].contains("b"));
+  EXPECT_EQ(graph->resolved["nodes"]["c"]["in"].size(), 1u);
+  expect_error(text, "g.json:2:93", "there is no node \"b\"", {"nodes.b=null"});
+}
+
 TEST_F(Load, SetsParametersAndPaths) {
   auto graph = load(train_then_apply, {"n=7"});
   ASSERT_TRUE(graph) << diagnostics.str();

@@ -11,6 +11,7 @@
 #include "nodes/corpus/select.h"
 #include "nodes/corpus/splits.h"
 #include "nodes/media/audio_file.h"
+#include "nodes/media/check_video.h"
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/register.h"
 #include "tests/nodes/media/media_test.h"
@@ -114,8 +115,8 @@ TEST(Grid, RealRecordings) {
   EXPECT_EQ(parts.video->source->rate(), Rational(25));
   EXPECT_EQ(parts.video->source->size(), cv::Size(360, 288));
   EXPECT_EQ(parts.landmarks->frames.size(), 75u);
-  EXPECT_TRUE(parts.video->damaged.empty());
-  EXPECT_EQ(Parts{}(clips.back(), context).video->damaged.size(), 12u);
+  EXPECT_TRUE(CheckVideo{}(*parts.video, context).damaged.empty());
+  EXPECT_EQ(CheckVideo{}(*Parts{}(clips.back(), context).video, context).damaged.size(), 12u);
 }
 
 class ManifestTest : public MediaTest {
@@ -310,18 +311,6 @@ TEST_F(PartsTest, WhatIsAbsentStaysAbsent) {
   const auto parts = Parts{}(recording_, context_);
   EXPECT_EQ(parts.audio.samples.size(), 16000);
   EXPECT_FALSE(parts.video || parts.transcript || parts.words || parts.phones || parts.landmarks || parts.visual);
-}
-
-TEST_F(PartsTest, DamagedFramesAreMarked) {
-  recording_.video = [] {
-    auto frames = test_video(25, 25).read_all();
-    frames[2].setTo(cv::Scalar::all(128));
-    return video_from_frames(frames, 25);
-  };
-  EXPECT_THAT(Parts{}(recording_, context_).video->damaged, ElementsAre(2));
-  Parts unchecked;
-  unchecked.check = false;
-  EXPECT_TRUE(unchecked(recording_, context_).video->damaged.empty());
 }
 
 TEST_F(PartsTest, LengthsAreCompared) {

@@ -200,6 +200,9 @@ TEST(Seams, ComparesStepsAtSeamsWithOthers) {
   EXPECT_NEAR(Seams{}(track, segments)->values.at("step"), 1, 1e-12);
   track.values.bottomRows(2).array() += 5;
   EXPECT_NEAR(Seams{}(track, segments)->values.at("step"), 6, 1e-12);
+  track.values << 0, 0, 0, 2, 3;
+  const SegmentTrack pause{{{"lead_sil", 0, 3}, {"b", 3, 2}}, 5, Rational(25)};
+  EXPECT_NEAR(Seams{}(track, pause)->values.at("step"), 2, 1e-12) << "a still pause is no measure";
 }
 
 TEST(Seams, SaysNothingWithoutSeamsAndRefusesOtherLengths) {
