@@ -57,7 +57,7 @@ class Connector {
       }
       const auto complaints = diagnostics_.messages().size();
       auto& wire = nodes_[index].inputs[p] = wire_port(made, spec, given->value);
-      const bool open = wire.sources.empty() && spec.kind != PortSpec::Kind::optional;
+      const bool open = wire.sources.empty() && spec.kind == PortSpec::Kind::item;
       if (open || diagnostics_.messages().size() > complaints) unsure_[index] = true;
     }
   }
@@ -353,13 +353,13 @@ class Connector {
       Json json = {{"type", node.type->name}};
       for (std::size_t p = 0; p < node.inputs.size(); ++p) {
         const auto& wire = node.inputs[p];
-        Json& in = json["in"][node.type->inputs[p].name];
-        if (!wire.names.empty())
+        const auto& spec = node.type->inputs[p];
+        if (spec.kind == PortSpec::Kind::collected && !wire.gathers_stream) {
+          Json& in = json["in"][spec.name] = Json::object();
           for (std::size_t i = 0; i < wire.sources.size(); ++i) in[wire.names[i]] = reference(wire.sources[i]);
-        else if (!wire.sources.empty())
-          in = reference(wire.sources.front());
-        else
-          json["in"].erase(node.type->inputs[p].name);
+        } else if (!wire.sources.empty()) {
+          json["in"][spec.name] = reference(wire.sources.front());
+        }
       }
       json["params"] = node.functor->parameters();
       out["nodes"][node.name] = std::move(json);

@@ -25,7 +25,8 @@ class Context {
   std::function<void(double)> on_progress;  ///< share done, 0..1
   std::function<void(std::string_view)> on_log;
   std::function<void(std::string_view)> on_warning;
-  const std::atomic<bool>* cancel = nullptr;
+  const std::atomic<bool>* cancel = nullptr;  ///< the user wants the run to end
+  const std::atomic<bool>* stop = nullptr;    ///< the run ends, as another node failed
 
   void progress(double share) const {
     if (on_progress) on_progress(share);
@@ -37,11 +38,14 @@ class Context {
   void warn(std::string_view message) const {
     if (on_warning) on_warning(message);
   }
-  bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
+  bool cancelled() const { return is_set(cancel) || is_set(stop); }
   /// Long loops call this now and then.
   void check_cancelled() const {
     if (cancelled()) throw Cancelled();
   }
+
+ private:
+  static bool is_set(const std::atomic<bool>* flag) { return flag && flag->load(std::memory_order_relaxed); }
 };
 
 }  // namespace talkgraph

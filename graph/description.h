@@ -22,6 +22,10 @@ struct Signature<R (N::*)(A...) const> {
 };
 template <class N, class R, class... A>
 struct Signature<R (N::*)(A...) const noexcept> : Signature<R (N::*)(A...) const> {};
+template <class N>
+concept HasSignature = requires {
+  typename Signature<decltype(&N::operator())>::Result;
+};
 
 template <class T>
 struct is_collected : std::false_type {};
@@ -175,6 +179,9 @@ Value to_value(std::optional<T> value) {
 /// version. A node offers `void describe(Description<Node>&)`.
 template <class N>
 class Description {
+  static_assert(std::is_default_constructible_v<N>, "a node is a struct that can be made without arguments");
+  static_assert(detail::HasSignature<N>,
+                "a node has one call operator, which is const and neither overloaded nor a template");
   using Call = detail::Signature<decltype(&N::operator())>;
   using Result = typename Call::Result;
   using Arguments = typename Call::Arguments;

@@ -7,7 +7,6 @@
 #include <string>
 #include <string_view>
 #include <tuple>
-#include <variant>
 #include <vector>
 
 #include "graph/json.h"
@@ -58,7 +57,7 @@ struct ParameterSpec {
   Json initial;  ///< default value
   bool required = false;
   Range range;
-  std::vector<std::string> choices;    ///< of an enum or a variant
+  std::vector<std::string> choices;    ///< of an enum
   std::vector<ParameterSpec> members;  ///< of a nested struct
   std::ptrdiff_t offset = 0;           ///< of the parameter in its struct, bytes
   /// Reads the parameter; complaints start with `subject` ("node \"mfcc\": parameter \"filters\"").

@@ -4,7 +4,6 @@
 #include <time.h>
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 
 #include "runtime/plan.h"
@@ -72,13 +71,6 @@ Caller::Caller(const Graph& graph, const RunOptions& options)
     books_[n].in.resize(graph.nodes[n].inputs.size());
     books_[n].out.resize(graph.nodes[n].type->outputs.size());
   }
-  if (options.cancel)
-    watcher_ = std::jthread([this](std::stop_token end) {
-      std::unique_lock lock(mutex_);
-      while (!end.stop_requested() && !*options_.cancel)
-        wake_.wait_for(lock, end, std::chrono::milliseconds(10), [] { return false; });
-      if (*options_.cancel) stop_ = true;
-    });
 }
 
 std::vector<Input> Caller::fixed_inputs(int n, const std::function<Value(Graph::Port)>& single,
@@ -131,7 +123,8 @@ Context Caller::context(int n, const std::string& item) const {
   Context context;
   context.item = item;
   context.folder = options_.folder;
-  context.cancel = &stop_;
+  context.cancel = options_.cancel;
+  context.stop = &stop_;
   context.on_progress = [this, n, item](double share) {
     for (auto* o : options_.observers) o->progress(n, item, share);
   };

@@ -1,14 +1,12 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "runtime/executor.h"
@@ -78,9 +76,6 @@ class Caller {
   std::atomic<bool> stop_{false};
   mutable std::mutex mutex_;
   std::vector<Failure> failures_;
-  // Hands the user's flag on to running nodes, which know only stop_.
-  std::condition_variable_any wake_;
-  std::jthread watcher_;
 };
 
 /// A source at work: its stream with what the stream refers to.

@@ -18,11 +18,11 @@ void check_landmarks(const LandmarkTrack& landmarks, const VideoSource& video) {
                                          video.rate().str(), landmarks.rate.str()));
 }
 
-void check_rate(const VideoSource& video, const Rational& fps) {
-  if (fps.num() == 0 || video.rate() == fps) return;
+void check_rate(const std::string& name, const Rational& rate, const Rational& fps) {
+  if (fps.num() == 0 || rate == fps) return;
   throw std::runtime_error(fmt::format(
-      "{}: has {} frames per second, this graph works at {}: set its fps to {}, if all recordings have that rate",
-      video.name(), video.rate().str(), fps.str(), video.rate().str()));
+      "{}: has {} frames per second, this graph works at {}: set its fps to {}, if all recordings have that rate", name,
+      rate.str(), fps.str(), rate.str()));
 }
 
 void check_end(const std::string& id, const char* what, const std::vector<Interval>& labels, double seconds) {
@@ -48,10 +48,13 @@ RecordingParts Parts::operator()(const Recording& recording, Context& context) c
   };
   if (parts.phones) check_end(recording.id, "phones", parts.phones->phones, parts.audio.seconds());
   if (parts.words) check_end(recording.id, "words", parts.words->words, parts.audio.seconds());
-  if (parts.visual) compare(static_cast<double>(parts.visual->frames()) / parts.visual->rate.value(), "visual track");
+  if (parts.visual) {
+    check_rate(recording.id + ": visual track", parts.visual->rate, fps);
+    compare(static_cast<double>(parts.visual->frames()) / parts.visual->rate.value(), "visual track");
+  }
   if (!recording.video) return parts;
   parts.video = recording.video();
-  check_rate(*parts.video->source, fps);
+  check_rate(parts.video->source->name(), parts.video->source->rate(), fps);
   if (!check) return parts;
   const VideoSource& source = *parts.video->source;
   if (parts.landmarks) check_landmarks(*parts.landmarks, source);
@@ -69,7 +72,7 @@ void describe(Description<Parts>& d) {
   d.output("phones", &RecordingParts::phones);
   d.output("landmarks", &RecordingParts::landmarks);
   d.output("visual", &RecordingParts::visual, "ready-made visual track");
-  d.param("fps", &Parts::fps).unit("frames/s").doc("rate that pictures must have; 0: any");
+  d.param("fps", &Parts::fps).unit("frames/s").doc("rate that pictures and visual tracks must have; 0: any");
   d.param("check", &Parts::check)
       .doc("counts the frames, for which the video is decoded once; off where only sound is used");
   d.param("tolerance", &Parts::tolerance).positive().unit("s").doc("difference of sound and picture that is warned of");

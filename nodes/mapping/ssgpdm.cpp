@@ -19,8 +19,6 @@ std::string last_phone(const std::string& label) {
 Ssgpdm AssembleSsgpdm::operator()(const Collected<Sgpdm>& states) const {
   if (states.empty()) throw std::runtime_error("no trained states: the training set made no windows");
   Ssgpdm model;
-  double frames = 0;
-  model.visual_mean.setZero(states[0].visual.mean.size());
   for (std::size_t i = 0; i < states.size(); ++i) {
     const Sgpdm& s = states[i];
     if (s.audio.mean.size() != states[0].audio.mean.size() || s.visual.mean.size() != states[0].visual.mean.size())
@@ -31,11 +29,7 @@ Ssgpdm AssembleSsgpdm::operator()(const Collected<Sgpdm>& states) const {
     if (!model.states.emplace(s.label, s).second) throw std::runtime_error("two states are called \"" + s.label + "\"");
     auto& ending = model.ending[last_phone(s.label)];
     if (ending.empty() || s.latents.rows() > model.states.at(ending).latents.rows()) ending = s.label;
-    const auto weight = static_cast<double>(s.latents.rows());
-    model.visual_mean += weight * s.visual.mean;
-    frames += weight;
   }
-  model.visual_mean /= frames;
   return model;
 }
 

@@ -156,7 +156,8 @@ SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Tr
                                                    const SegmentTrack& segments, Context& context) const {
   check(model, audio, segments);
   const Eigen::Index frames = std::min<Eigen::Index>(audio.frames(), segments.frames);
-  Out out{track_like(audio, frames, model.visual_mean.size()), track_like(audio, frames, model.visual_mean.size())};
+  const Eigen::Index dimension = model.states.begin()->second.visual.mean.size();
+  Out out{track_like(audio, frames, dimension), track_like(audio, frames, dimension)};
   Predictive visual;
   for (const auto& segment : segments.segments) {
     const Eigen::Index length = std::min<Eigen::Index>(segment.length, frames - segment.start);

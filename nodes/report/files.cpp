@@ -29,6 +29,19 @@ std::string to_csv(const Table& table) {
   return out;
 }
 
+std::string to_csv(const Track& track) {
+  std::string out;
+  for (Eigen::Index d = 0; d < track.dimension(); ++d)
+    out += (d ? "," : "") +
+           (track.names.empty() ? fmt::format("d{}", d) : csv_text(track.names[static_cast<std::size_t>(d)]));
+  out += "\n";
+  for (Eigen::Index t = 0; t < track.frames(); ++t) {
+    for (Eigen::Index d = 0; d < track.dimension(); ++d) out += fmt::format("{}{}", d ? "," : "", track.values(t, d));
+    out += "\n";
+  }
+  return out;
+}
+
 std::string to_json(const Table& table) {
   nlohmann::ordered_json out = {
       {"title", table.title}, {"columns", table.columns}, {"rows", nlohmann::ordered_json::object()}};

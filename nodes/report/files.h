@@ -3,11 +3,14 @@
 #include <string>
 
 #include "nodes/types/report.h"
+#include "nodes/types/track.h"
 
 namespace talkgraph {
 
 /// A heading and a line a row; no value is an empty cell.
 std::string to_csv(const Table& table);
+/// A heading (the track's names, or d0, d1, ...) and a line a frame, every digit kept.
+std::string to_csv(const Track& track);
 /// {"title", "columns", "rows": {name: {column: number or null}}}
 std::string to_json(const Table& table);
 

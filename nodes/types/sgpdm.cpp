@@ -80,7 +80,6 @@ void fields(Archive& ar, Ssgpdm& s) {
   }
   ar("ending_phones", phones);
   ar("ending_labels", labels);
-  ar("visual_mean", s.visual_mean);
   if (!ar.loading()) return;
   s.ending.clear();
   for (std::size_t i = 0; i < phones.size() && i < labels.size(); ++i) s.ending[phones[i]] = labels[i];

@@ -13,10 +13,9 @@ namespace talkgraph {
 struct Ssgpdm {
   std::map<std::string, Sgpdm> states;
   std::map<std::string, std::string> ending;  ///< phone -> the state with most frames that ends in it
-  Eigen::RowVectorXd visual_mean;             ///< over the training frames of all states
 };
 template <>
-inline constexpr PortType port_type<Ssgpdm>{"Ssgpdm", 1};
+inline constexpr PortType port_type<Ssgpdm>{"Ssgpdm", 2};
 void fields(Archive& ar, Ssgpdm& s);
 
 }  // namespace talkgraph

@@ -64,6 +64,49 @@ TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
   EXPECT_FALSE(fs::exists(several.output / "b.mp4"));
 }
 
+// Recordings without pictures: one dimension of the visual track follows the phones, the other is the same held back
+// by a frame. What is written has the names of what was read.
+TEST(EndToEnd, LearnsReadyMadeVisualTracks) {
+#ifndef TALKGRAPH_ESPEAK
+  GTEST_SKIP() << "built without espeak-ng, which speaks here";
+#endif
+  const test::TemporaryFolder temporary;
+  const std::vector<std::string> texts = {"Bob may buy a blue boat.",  "My mother bought a map.",
+                                          "A boy may pay me more.",    "Buy me a blue map, Bob.",
+                                          "Your boat may be my boat.", "More boys bought blue boats.",
+                                          "My boy may buy more maps.", "Pay Bob, and buy a map."};
+  Json clips = Json::array();
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const std::string id = "s" + std::to_string(i);
+    const Utterance said = talkgraph::speak(texts[i], {});
+    write_audio(temporary.path() / (id + ".wav"), said.audio);
+    std::string csv = "jaw,late\n";
+    const auto open_at = [&](double time) {
+      for (const auto& p : said.phones.phones)
+        if (time >= p.start && time < p.end)
+          return p.label == "sil" || p.label == "b" || p.label == "m" || p.label == "p" ? 0 : 1;
+      return 0;
+    };
+    for (int t = 0; t < said.audio.seconds() * 50; ++t)
+      csv += std::to_string(open_at((t + 0.5) / 50)) + "," + std::to_string(open_at((t - 0.5) / 50)) + "\n";
+    temporary.write(id + ".csv", csv);
+    clips.push_back(
+        {{"id", id}, {"audio", id + ".wav"}, {"transcript", texts[i]}, {"split", i < 6 ? "train" : "test"}});
+    if (i < 7) clips.back()["visual"] = {{"file", id + ".csv"}, {"rate", 50}};
+  }
+  RunCommand run;
+  run.sets = {"fps=50", "manifest=" + temporary.write("manifest.json", Json{{"clips", clips}}.dump())};
+  run.folder = temporary.path() / "run";
+  run.quiet = true;
+  ASSERT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/own-tracks.json", run, all_nodes()), success);
+  const Json rows = Json::parse(temporary.read("run/metrics.json"))["scores"]["rows"];
+  EXPECT_EQ(rows["SSGPDM"]["sequences"], 1);
+  EXPECT_LT(rows["SSGPDM"]["amse_share"], 0.7);
+  EXPECT_EQ(temporary.read("run/tracks/s6.csv").substr(0, 9), "jaw,late\n");
+  EXPECT_EQ(temporary.read("run/tracks/s7.csv").substr(0, 6), "d0,d1\n")
+      << "no recorded track: it is spoken, not scored";
+}
+
 TEST(EndToEnd, RefusesAFolderThatCannotBeWritten) {
   const test::TemporaryFolder temporary;
   RunCommand run;

@@ -141,6 +141,13 @@ TEST_F(Load, CollectsNamedSingleValues) {
   EXPECT_FALSE(graph->nodes.back().inputs[0].gathers_stream);
 }
 
+TEST_F(Load, CollectsNothingWhereToldSo) {
+  const auto graph =
+      load(R"({ "nodes": { "s": { "type": "toy.sum", "in": { "all": {} } } }, "outputs": { "s": "s" } })");
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_EQ(graph->resolved["nodes"]["s"]["in"], Json::parse(R"({ "all": {} })")) << "it must load again";
+}
+
 TEST_F(Load, DropsNodesNobodyNeeds) {
   const auto graph = load(R"({ "nodes": { "a": { "type": "toy.constant" }, "b": { "type": "toy.constant" } },
                                "outputs": { "a": "a" } })");

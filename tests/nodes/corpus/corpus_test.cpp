@@ -344,6 +344,9 @@ TEST_F(PartsTest, PicturesHaveTheRateOfTheGraph) {
   parts.fps = 30;
   EXPECT_THAT(error_of([&] { parts(recording_, context_); }),
               HasSubstr("has 25 frames per second, this graph works at 30: set its fps to 25"));
+  recording_.video = nullptr;
+  recording_.visual = Track{Eigen::MatrixXd::Zero(60, 2), 60, 0.5 / 60, {}};
+  EXPECT_THAT(error_of([&] { parts(recording_, context_); }), HasSubstr("u: visual track: has 60 frames per second"));
 }
 
 TEST_F(PartsTest, LabelsEndWhereTheSoundDoes) {

@@ -10,6 +10,7 @@
 #include "nodes/report/write.h"
 #include "nodes/report/write_plot.h"
 #include "nodes/report/write_table.h"
+#include "nodes/report/write_track.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph {
@@ -80,6 +81,25 @@ TEST_F(Report, WritesPlots) {
   EXPECT_THROW(WritePlot{}(plot, context), std::invalid_argument);
   context.item = "clip";
   EXPECT_EQ(WritePlot{}(plot, context).path, "plots/clip.svg");
+}
+
+TEST_F(Report, WritesTracks) {
+  Track track;
+  track.values.resize(2, 2);
+  track.values << 0.1, 2, 1.0 / 3, -4;
+  Track named = track;
+  named.names = {"jaw", "lips"};
+  EXPECT_EQ(WriteTrack{}(track, nullptr, context).path, "tracks/track.csv");
+  EXPECT_EQ(read("tracks/track.csv"), "d0,d1\n0.1,2\n0.3333333333333333,-4\n");
+  context.item = "s1";
+  WriteTrack{"out"}(track, &named, context);
+  EXPECT_EQ(read("out/s1.csv").substr(0, 9), "jaw,lips\n");
+  named.names.pop_back();
+  WriteTrack{"out"}(track, &named, context);
+  EXPECT_EQ(read("out/s1.csv").substr(0, 6), "d0,d1\n");
+  track.values.resize(0, 2);
+  WriteTrack{}(track, nullptr, context);
+  EXPECT_EQ(read("tracks/s1.csv"), "d0,d1\n");
 }
 
 TEST_F(Report, SaysWhichFileCannotBeWritten) {

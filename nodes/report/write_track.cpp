@@ -1,0 +1,23 @@
+#include "nodes/report/write_track.h"
+
+#include "graph/output_file.h"
+#include "nodes/report/files.h"
+#include "nodes/types/item_file.h"
+
+namespace talkgraph {
+
+Artifact WriteTrack::operator()(const Track& track, const Track* named, Context& context) const {
+  Track out = track;
+  if (named && std::ssize(named->names) == track.dimension()) out.names = named->names;
+  Artifact file = item_file(context, folder, ".csv", "track");
+  write_file(context.folder / file.path, to_csv(out));
+  return file;
+}
+
+void describe(Description<WriteTrack>& d) {
+  d.type("report.write_track").summary("writes a track as CSV, a line a frame").sink();
+  d.input("track").input("named", "a track that names the dimensions").output("file");
+  d.param("folder", &WriteTrack::folder).doc("below the run folder");
+}
+
+}  // namespace talkgraph
