@@ -104,7 +104,12 @@ std::optional<PhoneTrack> Align::operator()(const Audio& audio, const Transcript
   const Words words = known_words(transcript, track);
   if (words.empty() && transcript)
     throw std::runtime_error("phones.align: the transcript holds no word; leave it out to have the phones recognised");
-  if (words.empty() || is_blank(audio)) return all_silence(audio);
+  if (words.empty()) return all_silence(audio);
+  if (is_blank(audio))
+    throw std::runtime_error(
+        fmt::format("phones.align: there is no sound for {}: the recording, {:.2f} s, is silent; check that transcript "
+                    "and sound belong together",
+                    quote(words), audio.seconds()));
 
   if (audio.seconds() > kLongest)
     throw std::runtime_error(fmt::format(

@@ -18,10 +18,10 @@ namespace talkgraph {
 /// transcript, else from the word track (its times are not used). With neither
 /// the item is dropped: see phones.recognise.
 ///
-/// The result covers the whole sound without gaps. Digital silence, sound
-/// shorter than 50 ms and a word track without words give one "sil".
+/// The result covers the whole sound without gaps. A word track without words gives one "sil".
 /// Errors: words that do not go with the sound, or do not fit into it, with the
-/// place; a transcript without words; sound longer than 5 minutes.
+/// place; words for digital silence or for less than 50 ms; a transcript without
+/// words; sound longer than 5 minutes.
 struct Align {
   double mismatch = 50;  ///< how unlike their sound three seconds of words may be: a distance per frame
 

@@ -92,7 +92,8 @@ TEST(ContextWindows, LeaveOutLostFrames) {
   const Vlmm v = ContextTrain{.order = 1, .prune = 0, .keep = 0.01, .min_windows = 1}(labels);
   Track track{Eigen::Vector4d(0, 1, 2, 3), 25, 0, {}};
   track.lost = {1};
-  auto states = ContextWindows{}(v, labels, {{"x", track}}, {{"x", track}});
+  const Collected<Track> tracks = {{"x", track}};
+  auto states = ContextWindows{}(v, labels, tracks, tracks);
   std::map<std::string, std::size_t> windows;
   while (auto state = states.next()) windows[state->key] = state->value.visual.size();
   EXPECT_EQ(windows["a"], 2u);
