@@ -13,6 +13,15 @@
 namespace talkgraph::cli {
 namespace {
 
+/// What the cache spared.
+void tell_savings(const RunResult& result) {
+  std::uint64_t found = 0;
+  double saved = 0;
+  for (const auto& node : result.nodes) found += node.loaded, saved += node.saved;
+  if (found)
+    fmt::print(stderr, "{} results found in the cache, which took {} to compute\n", found, duration_text(saved));
+}
+
 Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunObserver*> observers,
                 const std::filesystem::path& folder) {
   Progress progress(command.quiet);
@@ -25,8 +34,13 @@ Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunOb
   options.keep_going = command.keep_going;
   options.cancel = guard.flag();
   options.observers = std::move(observers);
+  std::optional<Cache> cache;
+  if (command.cached)
+    options.cache =
+        &cache.emplace(command.cache.empty() ? Cache::default_folder() : command.cache, command.cache_limit);
   try {
     Outcome outcome{success, run(graph, options)};
+    if (!command.quiet) tell_savings(*outcome.result);
     if (const auto failures = outcome.result->failures.size()) {
       fmt::print(stderr, "{} failed, as said above\n", failures);
       outcome.code = failed;

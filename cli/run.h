@@ -20,6 +20,9 @@ struct RunCommand {
   bool keep_going = false;
   bool overwrite = false;  ///< a folder that holds a run may be written to
   bool quiet = false;
+  bool cached = false;          ///< results are kept and found
+  std::filesystem::path cache;  ///< empty: Cache::default_folder()
+  std::uint64_t cache_limit = Cache::default_limit;
 };
 
 /// `talkgraph run`: loads, checks and runs a graph in a run folder. The folder

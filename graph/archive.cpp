@@ -215,9 +215,10 @@ class HashArchive final : public Archive {
   HashArchive() : state_(XXH3_createState()) { XXH3_128bits_reset(state_); }
   ~HashArchive() override { XXH3_freeState(state_); }
   bool loading() const override { return false; }
-  std::string str() const {
+  bool hashing() const override { return true; }
+  Key key() const {
     const auto h = XXH3_128bits_digest(state_);
-    return fmt::format("{:016x}{:016x}", h.high64, h.low64);
+    return {h.high64, h.low64};
   }
 
  protected:
@@ -262,10 +263,10 @@ class HashArchive final : public Archive {
 std::unique_ptr<Archive> hdf5_writer(const std::string& path) { return std::make_unique<Hdf5Writer>(path); }
 std::unique_ptr<Archive> hdf5_reader(const std::string& path) { return std::make_unique<Hdf5Reader>(path); }
 
-std::string content_hash(const std::function<void(Archive&)>& visit) {
+Key content_key(const std::function<void(Archive&)>& visit) {
   HashArchive hash;
   visit(hash);
-  return hash.str();
+  return hash.key();
 }
 
 }  // namespace talkgraph

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "graph/key.h"
 #include "graph/rational.h"
 
 namespace talkgraph {
@@ -34,6 +35,8 @@ class Archive {
 
   /// True if members are filled from the archive, false if they are read.
   virtual bool loading() const = 0;
+  /// True if the value is only to be told from others: a lazy member gives its content key, not itself.
+  virtual bool hashing() const { return false; }
 
   template <class T>
   void operator()(std::string_view name, T& value);
@@ -55,9 +58,10 @@ class Archive {
 std::unique_ptr<Archive> hdf5_writer(const std::string& path);
 std::unique_ptr<Archive> hdf5_reader(const std::string& path);
 
-/// 128 bits of a value's content, as 32 hexadecimal digits. `visit` calls
-/// fields() on the archive it is given.
-std::string content_hash(const std::function<void(Archive&)>& visit);
+/// Of a value's content. `visit` calls fields() on the archive it is given.
+Key content_key(const std::function<void(Archive&)>& visit);
+
+inline void fields(Archive& ar, Key& key);
 
 // ---------------------------------------------------------------------------
 
@@ -142,6 +146,11 @@ void Archive::operator()(std::string_view name, T& value) {
     fields(*this, value);
     leave();
   }
+}
+
+inline void fields(Archive& ar, Key& key) {
+  ar("high", key.high);
+  ar("low", key.low);
 }
 
 }  // namespace talkgraph

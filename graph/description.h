@@ -212,7 +212,7 @@ class Description {
   /// Names the one output.
   Description& output(std::string name, std::string doc = "") {
     static_assert(Port<Produced>, "name the members of a returned struct: output(\"name\", &Out::member)");
-    return add_output(std::move(name), std::move(doc), port_type<Produced>, drops_items,
+    return add_output(std::move(name), std::move(doc), type_info<Produced>(), drops_items,
                       [](Produced& all) { return Value::of(std::move(all)); });
   }
   /// Names one member of the returned struct as an output.
@@ -220,7 +220,7 @@ class Description {
   Description& output(std::string name, M Produced::*member, std::string doc = "") {
     using T = typename detail::unwrap_optional<M>::type;
     static_assert(Port<T>, "specialise port_type for the type of this output");
-    return add_output(std::move(name), std::move(doc), port_type<T>, drops_items || !std::is_same_v<T, M>,
+    return add_output(std::move(name), std::move(doc), type_info<T>(), drops_items || !std::is_same_v<T, M>,
                       [member](Produced& all) { return detail::to_value(std::move(all.*member)); });
   }
   template <class M>
@@ -234,8 +234,8 @@ class Description {
  private:
   using Getter = std::function<Value(Produced&)>;
 
-  Description& add_output(std::string name, std::string doc, PortType type, bool may_drop, Getter get) {
-    detail::add_output(type_, {std::move(name), std::move(doc), type, PortSpec::Kind::item, may_drop});
+  Description& add_output(std::string name, std::string doc, const TypeInfo& info, bool may_drop, Getter get) {
+    detail::add_output(type_, {std::move(name), std::move(doc), info.type, PortSpec::Kind::item, may_drop, &info});
     getters_.push_back(std::move(get));
     return *this;
   }

@@ -40,8 +40,9 @@ struct PortSpec {
   std::string name;
   std::string doc;
   PortType type;
-  Kind kind = Kind::item;  ///< of an input
-  bool may_drop = false;   ///< of an output
+  Kind kind = Kind::item;          ///< of an input
+  bool may_drop = false;           ///< of an output
+  const TypeInfo* info = nullptr;  ///< of an output: how its values are loaded
 };
 
 /// All that is known of a node type: made from its description.

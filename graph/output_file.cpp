@@ -33,6 +33,15 @@ void OutputFile::finish() {
   if (error) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file_.string(), error.message()));
 }
 
+void put_files(const fs::path& from, const fs::path& to) {
+  for (const auto& entry : fs::recursive_directory_iterator(from)) {
+    if (!entry.is_regular_file()) continue;
+    OutputFile file(to / fs::relative(entry.path(), from));
+    fs::copy_file(entry.path(), file.part(), fs::copy_options::overwrite_existing);
+    file.finish();
+  }
+}
+
 void write_file(const fs::path& file, std::string_view text) {
   OutputFile whole(file);
   errno = 0;

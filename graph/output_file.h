@@ -26,6 +26,9 @@ class OutputFile {
   std::filesystem::path file_, part_;
 };
 
+/// Copies all files below a folder to another, each whole or not at all.
+void put_files(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Writes a text file whole or not at all.
 void write_file(const std::filesystem::path& file, std::string_view text);
 

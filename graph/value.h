@@ -74,6 +74,11 @@ class Value {
   const TypeInfo* type_ = nullptr;
 };
 
+/// Of the value's content; the value must not be empty.
+inline Key content_key(const Value& value) {
+  return content_key([&](Archive& ar) { value.type().visit(ar, const_cast<void*>(value.data())); });
+}
+
 /// A value with the key of its item: an utterance id, a state label.
 template <class T>
 struct Item {

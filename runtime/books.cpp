@@ -24,8 +24,8 @@ void check_books(const Graph& graph, const std::vector<NodeStats>& stats) {
     const auto items = node.type->makes_stream ? books.calls
                        : node.domain < 0       ? 1
                                                : stats[static_cast<std::size_t>(node.domain)].calls;
-    if (!node.type->makes_stream && books.calls + books.skipped != items)
-      unbalanced(node, fmt::format("{} items of {}", books.calls + books.skipped, items));
+    const auto done = books.calls + books.skipped + books.loaded + books.unneeded;
+    if (!node.type->makes_stream && done != items) unbalanced(node, fmt::format("{} items of {}", done, items));
     for (std::size_t p = 0; p < books.out.size(); ++p)
       if (books.out[p].items != items)
         unbalanced(node, fmt::format("output \"{}\" sent {} items of {}", node.type->outputs[p].name,

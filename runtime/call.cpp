@@ -36,6 +36,16 @@ std::string place_of(const Place& place) {
 
 }  // namespace
 
+/// Where a sink writes before its files go to the run folder and the cache; cleared away behind it.
+struct Caller::Desk {
+  explicit Desk(std::filesystem::path p) : path(std::move(p)) {}
+  ~Desk() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  std::filesystem::path path;
+};
+
 /// Books the time of a call, and tells observers of it.
 class Caller::Watch {
  public:
@@ -65,8 +75,8 @@ std::string Failure::str() const {
                      item.empty() ? "" : fmt::format(", item \"{}\"", item), cause);
 }
 
-Caller::Caller(const Graph& graph, const RunOptions& options)
-    : graph_(graph), options_(options), books_(graph.nodes.size()) {
+Caller::Caller(const Graph& graph, const RunOptions& options, Keeper* keeper)
+    : graph_(graph), options_(options), keeper_(keeper), books_(graph.nodes.size()) {
   for (std::size_t n = 0; n < books_.size(); ++n) {
     books_[n].in.resize(graph.nodes[n].inputs.size());
     books_[n].out.resize(graph.nodes[n].type->outputs.size());
@@ -148,6 +158,7 @@ void Caller::failed(int n, const std::string& item, std::string cause) {
   {
     const std::lock_guard lock(mutex_);
     failures_.push_back(failure);
+    failed_.emplace_back(n, item);
   }
   if (!options_.keep_going) throw RunError(std::move(failure));
   for (auto* o : options_.observers) o->failed(failure);
@@ -156,25 +167,83 @@ void Caller::failed(int n, const std::string& item, std::string cause) {
 std::vector<Value> Caller::call(int n, const std::string& item, std::vector<Input> inputs) {
   check_stopped();
   std::vector<Value> outputs;
-  if (!complete(n, inputs)) {
-    books(n).skipped += 1;
-  } else {
-    const Watch watch(*this, n, item);
-    books(n).calls += 1;
-    try {
-      Context surroundings = context(n, item);
-      Random random(graph_.seed, node(n).type->name, item);
-      outputs = node(n).functor->call(inputs, surroundings, random);
-    } catch (const Cancelled&) {
-      throw;
-    } catch (...) {
-      failed(n, item, cause_of(std::current_exception()));
-    }
+  switch (keeper_ ? keeper_->forecast().need(n, item) : Need::call) {
+    case Need::skip:
+      books(n).unneeded += 1;
+      break;
+    case Need::load:
+      outputs = load(n, item);
+      break;
+    case Need::call:
+      outputs = compute(n, item, inputs);
+      break;
   }
   outputs.resize(node(n).type->outputs.size());
   sent(n, outputs);
   for (auto* o : options_.observers) o->item_done(n, item);
   return outputs;
+}
+
+std::vector<Value> Caller::load(int n, const std::string& item) {
+  const Watch watch(*this, n, item);
+  auto result = keeper_->load(n, item);
+  books(n).loaded += 1;
+  books(n).saved += static_cast<std::int64_t>(1e9 * result.seconds);
+  for (const auto& warning : result.warnings)
+    for (auto* o : options_.observers) o->warn(n, item, warning);
+  return std::move(result.outputs);
+}
+
+std::vector<Value> Caller::compute(int n, const std::string& item, const std::vector<Input>& inputs) {
+  const bool kept = keeper_ && keeper_->keeps(n);
+  Cache::Result result;
+  std::optional<Desk> desk;
+  if (!complete(n, inputs)) {
+    books(n).skipped += 1;
+  } else {
+    const Watch watch(*this, n, item);
+    books(n).calls += 1;
+    const auto start = nanoseconds(CLOCK_MONOTONIC);
+    try {
+      Context surroundings = context(n, item);
+      if (kept) {
+        surroundings.on_warning = [&, tell = surroundings.on_warning](std::string_view message) {
+          result.warnings.emplace_back(message);
+          tell(message);
+        };
+        if (node(n).type->sink) surroundings.folder = desk.emplace(keeper_->desk()).path;
+      }
+      Random random(graph_.seed, node(n).type->name, item);
+      result.outputs = node(n).functor->call(inputs, surroundings, random);
+      if (desk) keeper_->deliver(desk->path);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (...) {
+      failed(n, item, cause_of(std::current_exception()));
+      return {};
+    }
+    result.seconds = 1e-9 * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - start);
+  }
+  if (kept && !tainted(n, item)) keeper_->keep(n, item, result, desk ? desk->path : std::filesystem::path());
+  return std::move(result.outputs);
+}
+
+bool Caller::tainted(int n, const std::string& item) const {
+  const std::lock_guard lock(mutex_);
+  if (failed_.empty()) return false;
+  std::set<std::pair<int, bool>> seen;  // a node, and whether only the item counts
+  std::vector<std::pair<int, bool>> open = {{n, true}};
+  while (!open.empty()) {
+    const auto [at, by_item] = open.back();
+    open.pop_back();
+    if (!seen.insert({at, by_item}).second) continue;
+    for (const auto& [failed_node, failed_item] : failed_)
+      if (failed_node == at && (!by_item || failed_item == item)) return true;
+    for_each_source(graph_, at, [&](std::size_t, Graph::Port source, Way way) {
+      open.emplace_back(source.node, by_item && way == Way::item);
+    });
+  }
+  return false;
 }
 
 void Caller::domain_size(int source, std::size_t items) const {
@@ -193,6 +262,9 @@ std::vector<NodeStats> Caller::stats() const {
     s.calls = b.calls;
     s.skipped = b.skipped;
     s.failed = b.failed;
+    s.loaded = b.loaded;
+    s.unneeded = b.unneeded;
+    s.saved = 1e-9 * static_cast<double>(b.saved);
     s.wall = 1e-9 * static_cast<double>(b.wall);
     s.cpu = 1e-9 * static_cast<double>(b.cpu);
     s.in = counts(b.in);
@@ -222,6 +294,7 @@ OpenSource::OpenSource(Caller& caller, int node, std::vector<Input> inputs)
       context_(caller.context(node, "")),
       random_(caller.graph_.seed, caller.node(node).type->name, "") {
   caller_.check_stopped();
+  if (caller_.keeper_ && caller_.keeper_->forecast().need(node, "") == Need::skip) return;
   if (!caller_.complete(node, inputs)) {
     caller_.books(node).skipped += 1;
     return;
@@ -272,6 +345,7 @@ std::optional<Item<std::vector<Value>>> OpenSource::next() {
     }
     caller_.books(node_).calls += 1;
     item->value.resize(caller_.node(node_).type->outputs.size());
+    if (caller_.keeper_) caller_.keeper_->forecast().enter(node_, item->key, item->value);
     caller_.sent(node_, item->value);
     for (auto* o : caller_.options_.observers) o->item_done(node_, item->key);
     return item;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/executor.h"
+#include "runtime/keeper.h"
 
 namespace talkgraph {
 
@@ -24,7 +25,8 @@ struct Gathered {
 /// node, item and place to errors.
 class Caller {
  public:
-  Caller(const Graph& graph, const RunOptions& options);
+  /// `keeper` is null where nothing is kept.
+  Caller(const Graph& graph, const RunOptions& options, Keeper* keeper);
 
   /// The inputs that are the same in every call of a node.
   std::vector<Input> fixed_inputs(int node, const std::function<Value(Graph::Port)>& single,
@@ -32,9 +34,9 @@ class Caller {
   /// Adds those of one item.
   void add_item_inputs(int node, std::vector<Input>& inputs, const std::function<const Value&(Graph::Port)>& item);
 
-  /// One value an output port; empty ones if a required input has nothing, if
+  /// One value an output port; empty ones if nobody wants them, if a required input has nothing, if
   /// the node drops the item, or if it failed and the run keeps going. Throws
-  /// RunError or Cancelled.
+  /// RunError, Cancelled or Cache::Damaged.
   std::vector<Value> call(int node, const std::string& item, std::vector<Input> inputs);
 
   /// Makes running nodes give up; later calls throw Cancelled.
@@ -54,16 +56,22 @@ class Caller {
   };
   struct Books {
     std::deque<Count> in, out;
-    std::atomic<std::uint64_t> calls{0}, skipped{0}, failed{0};
-    std::atomic<std::int64_t> wall{0}, cpu{0};  // nanoseconds
+    std::atomic<std::uint64_t> calls{0}, skipped{0}, failed{0}, loaded{0}, unneeded{0};
+    std::atomic<std::int64_t> wall{0}, cpu{0}, saved{0};  // nanoseconds
   };
   class Watch;
+  struct Desk;
 
   const Graph::Node& node(int n) const { return graph_.nodes[static_cast<std::size_t>(n)]; }
   Books& books(int n) { return books_[static_cast<std::size_t>(n)]; }
   Context context(int node, const std::string& item) const;
   bool complete(int node, const std::vector<Input>& inputs) const;
   void sent(int node, const std::vector<Value>& outputs);
+  std::vector<Value> load(int node, const std::string& item);
+  std::vector<Value> compute(int node, const std::string& item, const std::vector<Input>& inputs);
+  void keep(int node, const std::string& item, const Cache::Result& result, const std::filesystem::path& written);
+  /// Whether a failed item may have had a hand in what a node makes of an item.
+  bool tainted(int node, const std::string& item) const;
   /// Books a failure; throws RunError unless the run keeps going.
   void failed(int node, const std::string& item, std::string cause);
   void check_stopped() const {
@@ -72,10 +80,12 @@ class Caller {
 
   const Graph& graph_;
   const RunOptions& options_;
+  Keeper* const keeper_;
   std::deque<Books> books_;
   std::atomic<bool> stop_{false};
   mutable std::mutex mutex_;
   std::vector<Failure> failures_;
+  std::vector<std::pair<int, std::string>> failed_;  // nodes and items of failures_
 };
 
 /// A source at work: its stream with what the stream refers to.

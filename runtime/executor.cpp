@@ -15,15 +15,12 @@ const RunResult::Output& RunResult::output(const std::string& name) const {
   throw std::out_of_range("the graph has no output \"" + name + "\"");
 }
 
-RunResult run(const Graph& graph, const RunOptions& options) {
-  if (options.threads < 1)
-    throw std::invalid_argument(fmt::format("threads must be at least 1, got {}", options.threads));
-  if (options.in_flight < 0)
-    throw std::invalid_argument(fmt::format("in_flight must not be negative, got {}", options.in_flight));
-  const int in_flight = options.in_flight ? options.in_flight : 2 * options.threads + 2;
+namespace {
 
+RunResult run_once(const Graph& graph, const RunOptions& options, Keeper* keeper) {
+  const int in_flight = options.in_flight ? options.in_flight : 2 * options.threads + 2;
   const auto start = std::chrono::steady_clock::now();
-  Caller caller(graph, options);
+  Caller caller(graph, options, keeper);
   for (auto* o : options.observers) o->started(graph);
   const auto end = [&](RunReport::Status status, std::string error) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
@@ -40,9 +37,33 @@ RunResult run(const Graph& graph, const RunOptions& options) {
   } catch (const Cancelled&) {
     end(RunReport::Status::cancelled, "");
     throw;
+  } catch (const Cache::Damaged&) {
+    throw;
   } catch (const std::exception& e) {
     end(RunReport::Status::failed, e.what());
     throw;
+  }
+}
+
+}  // namespace
+
+RunResult run(const Graph& graph, const RunOptions& options) {
+  if (options.threads < 1)
+    throw std::invalid_argument(fmt::format("threads must be at least 1, got {}", options.threads));
+  if (options.in_flight < 0)
+    throw std::invalid_argument(fmt::format("in_flight must not be negative, got {}", options.in_flight));
+  if (!options.cache) return run_once(graph, options, nullptr);
+  const auto warn = [&](std::string_view message) {
+    for (auto* o : options.observers) o->notice(message);
+  };
+  for (;;) {
+    Keeper keeper(graph, *options.cache, options.folder, options.cancel, warn);
+    try {
+      return run_once(graph, options, &keeper);
+    } catch (const Cache::Damaged& e) {
+      // The entry is gone. What the run kept so far is found when it starts again.
+      warn(e.what());
+    }
   }
 }
 

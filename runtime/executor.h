@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "graph/graph.h"
+#include "runtime/cache.h"
 #include "runtime/observer.h"
 
 namespace talkgraph {
@@ -29,6 +30,7 @@ struct RunOptions {
   int in_flight = 0;                   ///< items of one source at work at the same time; 0: 2 * threads + 2
   bool keep_going = false;             ///< failed items become nothings and are listed
   const std::atomic<bool>* cancel = nullptr;
+  Cache* cache = nullptr;  ///< where results are kept and found; none: all is computed
   std::vector<RunObserver*> observers;
 };
 

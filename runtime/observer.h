@@ -31,8 +31,11 @@ struct NodeStats {
   std::uint64_t calls = 0;    ///< of the functor; items made, for a source
   std::uint64_t skipped = 0;  ///< not called, because an input had nothing
   std::uint64_t failed = 0;
-  double wall = 0;  ///< seconds in calls, added up over threads
-  double cpu = 0;   ///< seconds of processor time
+  std::uint64_t loaded = 0;    ///< from the cache
+  std::uint64_t unneeded = 0;  ///< not called, because what reads it was loaded
+  double saved = 0;            ///< seconds that loaded calls once took
+  double wall = 0;             ///< seconds in calls, added up over threads
+  double cpu = 0;              ///< seconds of processor time
   std::vector<PortCount> in, out;
 };
 
@@ -63,6 +66,8 @@ class RunObserver {
   virtual void progress(int /*node*/, const std::string& /*item*/, double /*share*/) {}
   virtual void log(int /*node*/, const std::string& /*item*/, std::string_view /*message*/) {}
   virtual void warn(int /*node*/, const std::string& /*item*/, std::string_view /*message*/) {}
+  /// Of the run as a whole.
+  virtual void notice(std::string_view /*message*/) {}
   /// An item failed and the run keeps going; what stops a run is told by ended().
   virtual void failed(const Failure&) {}
   virtual void ended(const RunReport&) {}

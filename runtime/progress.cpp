@@ -101,6 +101,8 @@ void Progress::warn(int node, const std::string& item, std::string_view message)
                    item.empty() ? "" : fmt::format(", item \"{}\"", item), message));
 }
 
+void Progress::notice(std::string_view message) { tell(fmt::format("warning: {}", message)); }
+
 void Progress::failed(const Failure& failure) { tell(failure.str()); }
 
 void Progress::tell(const std::string& text) {

@@ -33,6 +33,7 @@ class Progress final : public RunObserver {
   void item_done(int node, const std::string& item) override;
   void progress(int node, const std::string& item, double share) override;
   void warn(int node, const std::string& item, std::string_view message) override;
+  void notice(std::string_view message) override;
   void failed(const Failure&) override;
   void ended(const RunReport&) override;
 

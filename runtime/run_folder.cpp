@@ -66,6 +66,8 @@ void RunFolder::warn(int node, const std::string& item, std::string_view message
   log(node, item, fmt::format("warning: {}", message));
 }
 
+void RunFolder::notice(std::string_view message) { log(fmt::format("warning: {}", message)); }
+
 void RunFolder::failed(const Failure& failure) { log(failure.str()); }
 
 Json RunFolder::header(const std::string& status) const {
@@ -97,6 +99,9 @@ void RunFolder::ended(const RunReport& report) {
                              {"calls", stats.calls},
                              {"skipped", stats.skipped},
                              {"failed", stats.failed},
+                             {"loaded", stats.loaded},
+                             {"unneeded", stats.unneeded},
+                             {"saved_seconds", stats.saved},
                              {"seconds", stats.wall},
                              {"cpu_seconds", stats.cpu}});
   }

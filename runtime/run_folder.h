@@ -32,6 +32,7 @@ class RunFolder final : public RunObserver {
   void started(const Graph&) override;
   void log(int node, const std::string& item, std::string_view message) override;
   void warn(int node, const std::string& item, std::string_view message) override;
+  void notice(std::string_view message) override;
   void failed(const Failure&) override;
   void ended(const RunReport&) override;
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <opencv2/core.hpp>
 
+#include "cli/cache.h"
 #include "cli/look.h"
 #include "cli/registry.h"
 #include "cli/run.h"
@@ -40,6 +41,10 @@ int check(const std::vector<std::string>& files, const Registry& registry, const
       code = usage;
   }
   return code;
+}
+
+Cache open_cache(const RunCommand& run) {
+  return Cache(run.cache.empty() ? Cache::default_folder() : run.cache, run.cache_limit);
 }
 
 int draw(const std::string& file, const Registry& registry, const std::vector<std::string>& sets,
@@ -82,8 +87,26 @@ int main(int argc, char** argv) {
   run_app->add_option("--threads", run.threads, "threads")->check(CLI::Range(1, 256));
   run_app->add_flag("--serial", run.serial, "one thread, node by node");
   run_app->add_flag("--keep-going", run.keep_going, "finish what can be finished, list what failed");
+  run_app->add_option("--cache", run.cache,
+                      "folder that keeps results (default: $TALKGRAPH_CACHE, or ~/.cache/talkgraph)");
+  bool no_cache = false;
+  run_app->add_flag("--no-cache", no_cache, "compute everything, keep nothing");
+  run_app->add_option("--cache-size", run.cache_limit, "most that the cache may hold, as 500MB or 20GB")
+      ->transform(CLI::AsSizeValue(true))
+      ->capture_default_str();
   run_app->add_flag("--overwrite", run.overwrite, "write to a folder that holds a run already");
   run_app->add_flag("-q,--quiet", run.quiet, "no progress, only warnings and failures");
+
+  auto* cache_app = app.add_subcommand("cache", "look after the kept results");
+  cache_app->require_subcommand(1);
+  std::uint64_t keep = 0;
+  auto* info_app = cache_app->add_subcommand("info", "where they are, how many, of what");
+  auto* verify_app = cache_app->add_subcommand("verify", "read all of them and remove the damaged ones");
+  auto* prune_app = cache_app->add_subcommand("prune", "remove the longest unused, or all");
+  prune_app->add_option("--size", keep, "what may stay, as 500MB or 2GB (default: nothing)")
+      ->transform(CLI::AsSizeValue(true));
+  for (auto* c : {info_app, verify_app, prune_app})
+    c->add_option("--cache", run.cache, "the folder, if not the usual one");
 
   auto* speak_app = app.add_subcommand("speak", "animate new speech with a trained model");
   speak_app->add_option("model", speech.model, "model file that a run wrote")->required();
@@ -128,7 +151,11 @@ int main(int argc, char** argv) {
   try {
     const Registry registry = all_nodes();
     const auto command = [&]() -> int {
+      run.cached = !no_cache;
       if (*run_app) return run_file(graph, run, registry);
+      if (*info_app) return fmt::print("{}", cache_info(open_cache(run))), success;
+      if (*verify_app) return cache_verify(open_cache(run)) ? failed : success;
+      if (*prune_app) return fmt::print("{} freed\n", size_text(open_cache(run).prune(keep))), success;
       if (*speak_app) return speak(speech, registry);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;

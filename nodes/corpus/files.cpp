@@ -41,6 +41,7 @@ Stream<Recording> SoundFiles::operator()() const {
     Recording recording;
     recording.id = unique_id(std::filesystem::path(path).stem().string(), taken);
     recording.audio = [path] { return read_audio(path); };
+    recording.key = [path] { return file_key(path); };
     if (!transcripts.empty() && !transcripts[i].empty()) recording.transcript = Transcript{transcripts[i]};
     items.push_back({recording.id, recording});
   }

@@ -77,6 +77,7 @@ Recording read_clip(const fs::path& folder, const Clip& clip, bool with_landmark
   recording.split = clip.split;
   recording.audio = [path = files.video.string()] { return read_audio(path); };
   recording.video = [path = files.video.string()] { return open_video(path); };
+  recording.key = [path = files.video] { return file_key(path); };
   recording.words = read_words(files.align.string());
   recording.transcript = transcript_of(*recording.words);
   if (with_landmarks) recording.landmarks = read_landmarks(files.landmarks.string(), Rational(25), "ibug68");

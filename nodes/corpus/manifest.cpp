@@ -58,6 +58,9 @@ Recording with_media(const ManifestClip& clip, Recording recording) try {
   recording.split = clip.split;
   recording.audio = [path = clip.audio.empty() ? clip.video : clip.audio] { return read_audio(path); };
   if (!clip.video.empty()) recording.video = [path = clip.video, rate = clip.rate] { return open(path, rate); };
+  recording.key = [clip] {
+    return KeyMaker().add(file_key(clip.audio)).add(file_key(clip.video)).add(clip.rate ? clip.rate->str() : "").key();
+  };
   if (!clip.visual.empty()) recording.visual = read_visual(clip);
   if (!clip.landmarks.empty()) {
     const Rational rate = clip.rate ? *clip.rate : recording.video().source->rate();

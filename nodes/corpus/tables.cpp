@@ -47,7 +47,7 @@ std::pair<Eigen::Index, Eigen::Index> shape_of(const std::string& tuple, const s
 template <class T>
 Eigen::MatrixXd matrix_of(const char* data, Eigen::Index rows, Eigen::Index columns) {
   Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values(rows, columns);
-  std::memcpy(values.data(), data, static_cast<std::size_t>(values.size()) * sizeof(T));
+  if (values.size() > 0) std::memcpy(values.data(), data, static_cast<std::size_t>(values.size()) * sizeof(T));
   return values.template cast<double>();
 }
 

@@ -34,6 +34,7 @@ BaseClip ChooseBase::operator()(const Collected<Video>& videos, const Collected<
 
 void describe(Description<ChooseBase>& d) {
   d.type("face.choose_base")
+      .stored()
       .version(1)
       .summary("picks the clip to draw synthesised faces upon")
       .source("docs/method.md §2");

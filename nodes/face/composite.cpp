@@ -229,12 +229,12 @@ class CompositeSource final : public VideoSource {
   cv::Size size() const override { return plan_->base.frames.source->size(); }
   std::unique_ptr<Reader> open() const override { return std::make_unique<CompositeReader>(plan_); }
   std::string name() const override { return "face drawn on " + plan_->base.frames.source->name(); }
-  std::string content_key() const override {
-    return content_hash([&](Archive& ar) {
+  Key key() const override {
+    return content_key([&](Archive& ar) {
       auto model = plan_->painter.model();
       auto parameters = plan_->parameters;
       auto track = plan_->base.track;
-      auto base = plan_->base.frames.source->content_key();
+      auto base = plan_->base.frames.source->key();
       auto settings = plan_->settings;
       ar("model", model);
       ar("parameters", parameters);

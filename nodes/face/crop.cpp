@@ -60,9 +60,9 @@ class CropSource final : public VideoSource {
   std::unique_ptr<Reader> open() const override { return std::make_unique<CropReader>(video_, part_); }
   std::string name() const override { return video_.source->name(); }
   std::vector<std::int64_t> decoding_errors() const override { return video_.source->decoding_errors(); }
-  std::string content_key() const override {
-    return content_hash([&](Archive& ar) {
-      auto video = video_.source->content_key();
+  Key key() const override {
+    return content_key([&](Archive& ar) {
+      auto video = video_.source->key();
       auto part = part_;
       ar("video", video);
       ar("x", part.x);

@@ -48,8 +48,8 @@ class FaceSource final : public VideoSource {
   cv::Size size() const override { return canvas(scene_->model, scene_->settings.zoom); }
   std::unique_ptr<Reader> open() const override { return std::make_unique<FaceReader>(scene_); }
   std::string name() const override { return "rendered face"; }
-  std::string content_key() const override {
-    return content_hash([&](Archive& ar) {
+  Key key() const override {
+    return content_key([&](Archive& ar) {
       auto scene = *scene_;
       ar("model", scene.model);
       ar("parameters", scene.parameters);

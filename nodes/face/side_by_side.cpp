@@ -78,9 +78,9 @@ class PairSource final : public VideoSource {
   }
   std::unique_ptr<Reader> open() const override { return std::make_unique<PairReader>(pair_, frames()); }
   std::string name() const override { return pair_->left.source->name() + " beside " + pair_->right.source->name(); }
-  std::string content_key() const override {
-    return content_hash([&](Archive& ar) {
-      auto left = pair_->left.source->content_key(), right = pair_->right.source->content_key();
+  Key key() const override {
+    return content_key([&](Archive& ar) {
+      auto left = pair_->left.source->key(), right = pair_->right.source->key();
       auto labels = pair_->labels;
       ar("left", left);
       ar("right", right);

@@ -6,8 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "graph/key.h"
 #include "nodes/media/ffmpeg.h"
-#include "nodes/media/file_hash.h"
 
 namespace talkgraph {
 namespace {
@@ -33,10 +33,11 @@ class FolderVideo final : public VideoSource {
   std::int64_t frames() const override { return static_cast<std::int64_t>(files_.size()); }
   cv::Size size() const override { return size_; }
   std::string name() const override { return folder_; }
-  std::string content_key() const override {
-    std::string key = rate_.str();
-    for (const auto& file : files_) key += ":" + file_hash(file);
-    return key;
+  Key key() const override {
+    KeyMaker maker;
+    maker.add(rate_.str());
+    for (const auto& file : files_) maker.add(file_key(file));
+    return maker.key();
   }
   std::unique_ptr<Reader> open() const override { return std::make_unique<FolderReader>(files_, size_); }
 

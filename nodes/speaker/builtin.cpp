@@ -102,15 +102,6 @@ LandmarkTrack mark(const std::vector<face::Moment>& moments, Rational fps, int h
   return track;
 }
 
-/// A number that changes with any landmark (FNV-1a over their 64ths of a pixel).
-std::uint64_t checksum(const LandmarkTrack& track) {
-  std::uint64_t hash = 14695981039346656037U;
-  for (const auto& shape : track.frames)
-    for (const double v : shape.reshaped())
-      hash = (hash ^ static_cast<std::uint64_t>(std::llround(v * 64))) * 1099511628211U;
-  return hash;
-}
-
 std::vector<std::size_t> choose_sentences(std::uint64_t seed) {
   std::vector<std::size_t> order(speaker_sentence_count());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -136,10 +127,14 @@ Recording record(const BuiltinSpeaker& node, const std::shared_ptr<const face::P
   auto moments = record_face(*r.phones, delivery, timing.frames, node.fps, random);
   r.landmarks = mark(moments, node.fps, static_cast<int>(node.height));
   r.audio = [=, rate = node.sample_rate] { return record_sound(text, delivery, timing.seconds, rate, seed, id); };
-  const auto key = fmt::format("speaker.builtin 1 seed {} height {} fps {} landmarks {:x}", seed, node.height,
-                               node.fps.str(), checksum(*r.landmarks));
+  r.key = [key = KeyMaker()
+                     .add(fmt::format("built-in speaker: seed {}, height {}, fps {}, sample rate {}", node.seed,
+                                      node.height, node.fps.str(), node.sample_rate))
+                     .add(id)
+                     .add(text)
+                     .key()] { return key; };
   const auto video =
-      face::talking_video(portrait, std::move(moments), node.fps, "built-in speaker, " + id, key, random.bits());
+      face::talking_video(portrait, std::move(moments), node.fps, "built-in speaker, " + id, r.key(), random.bits());
   r.video = [video] { return video; };
   return r;
 }

@@ -10,19 +10,19 @@ namespace {
 class TalkingVideo final : public VideoSource, public std::enable_shared_from_this<TalkingVideo> {
  public:
   TalkingVideo(std::shared_ptr<const Portrait> portrait, std::vector<Moment> moments, Rational rate, std::string name,
-               std::string key, std::uint64_t noise_seed)
+               const Key& key, std::uint64_t noise_seed)
       : portrait_(std::move(portrait)),
         moments_(std::move(moments)),
         rate_(rate),
         name_(std::move(name)),
-        key_(std::move(key)),
+        key_(key),
         noise_seed_(noise_seed) {}
 
   Rational rate() const override { return rate_; }
   std::int64_t frames() const override { return static_cast<std::int64_t>(moments_.size()); }
   cv::Size size() const override { return picture_size(portrait_->height()); }
   std::string name() const override { return name_; }
-  std::string content_key() const override { return key_; }
+  Key key() const override { return key_; }
   std::unique_ptr<VideoSource::Reader> open() const override;
 
  private:
@@ -45,7 +45,8 @@ class TalkingVideo final : public VideoSource, public std::enable_shared_from_th
   std::shared_ptr<const Portrait> portrait_;
   std::vector<Moment> moments_;
   Rational rate_;
-  std::string name_, key_;
+  std::string name_;
+  Key key_;
   std::uint64_t noise_seed_;
 };
 
@@ -59,10 +60,10 @@ const Renderer& Portrait::renderer() const {
 }
 
 Video talking_video(std::shared_ptr<const Portrait> portrait, std::vector<Moment> moments, Rational rate,
-                    std::string name, std::string key, std::uint64_t noise_seed) {
+                    std::string name, const Key& key, std::uint64_t noise_seed) {
   Video video;
   video.source = std::make_shared<const TalkingVideo>(std::move(portrait), std::move(moments), rate, std::move(name),
-                                                      std::move(key), noise_seed);
+                                                      key, noise_seed);
   return video;
 }
 

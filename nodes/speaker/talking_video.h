@@ -29,6 +29,6 @@ class Portrait {
 /// Moments of a face as a video, drawn frame by frame when read. `key` is the
 /// video's content key.
 Video talking_video(std::shared_ptr<const Portrait> portrait, std::vector<Moment> moments, Rational rate,
-                    std::string name, std::string key, std::uint64_t noise_seed);
+                    std::string name, const Key& key, std::uint64_t noise_seed);
 
 }  // namespace talkgraph::face

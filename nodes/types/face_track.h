@@ -18,12 +18,12 @@ void fields(Archive& ar, Pose& p);
 
 /// An appearance model followed through a clip; vectors have one entry a frame.
 struct FaceTrack {
-  Track parameters;                ///< combined appearance parameters c, T × modes
+  Track parameters;  ///< combined appearance parameters c, T × modes
   std::vector<Pose> poses;
   std::vector<double> gain, offset;  ///< of the texture, photometric
-  std::vector<double> residual;    ///< RMS texture error of the fit, grey levels
-  std::vector<std::int64_t> lost;  ///< 1 where the fit is not to be trusted (damaged picture, drift)
-  std::vector<Shape> shapes;       ///< fitted landmarks in the picture
+  std::vector<double> residual;      ///< RMS texture error of the fit, grey levels
+  std::vector<std::int64_t> lost;    ///< 1 where the fit is not to be trusted (damaged picture, drift)
+  std::vector<Shape> shapes;         ///< fitted landmarks in the picture
 };
 template <>
 inline constexpr PortType port_type<FaceTrack>{"FaceTrack", 1};

@@ -49,8 +49,25 @@ void fields(Archive& ar, LandmarkTrack& l) {
   ar("scheme", l.scheme);
 }
 
-void fields(Archive&, Recording& r) {
-  throw std::logic_error("recording " + r.id + ": a recording is a handle; store its parts instead");
+void fields(Archive& ar, Recording& r) {
+  if (!ar.hashing()) throw std::logic_error("recording " + r.id + ": a recording is a handle; store its parts instead");
+  ar("id", r.id);
+  ar("split", r.split);
+  if (r.key) {
+    Key key = r.key();
+    ar("key", key);
+  } else {
+    Audio audio = r.audio();
+    ar("audio", audio);
+    std::optional<Video> video;
+    if (r.video) video = r.video();
+    ar("video", video);
+  }
+  ar("visual", r.visual);
+  ar("transcript", r.transcript);
+  ar("words", r.words);
+  ar("phones", r.phones);
+  ar("landmarks", r.landmarks);
 }
 
 void fields(Archive& ar, Pose& p) {

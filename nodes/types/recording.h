@@ -19,15 +19,16 @@ struct Recording {
   std::string id;
   std::string split;  ///< "train", "validation", "test", or what the manifest says
   std::function<Audio()> audio;
-  std::function<Video()> video;             ///< empty where there are no pictures
-  std::optional<Track> visual;              ///< ready-made visual track instead of, or beside, pictures
+  std::function<Video()> video;  ///< empty where there are no pictures
+  std::function<Key()> key;      ///< changes whenever sound or pictures do; empty: they are read to tell
+  std::optional<Track> visual;   ///< ready-made visual track instead of, or beside, pictures
   std::optional<Transcript> transcript;
   std::optional<WordTrack> words;
   std::optional<PhoneTrack> phones;
   std::optional<LandmarkTrack> landmarks;
 };
 template <>
-inline constexpr PortType port_type<Recording>{"Recording", 1};
+inline constexpr PortType port_type<Recording>{"Recording", 2};
 void fields(Archive& ar, Recording& r);
 
 }  // namespace talkgraph

@@ -16,14 +16,13 @@ class MemoryVideo final : public VideoSource {
   std::int64_t frames() const override { return static_cast<std::int64_t>(frames_.size()); }
   cv::Size size() const override { return frames_.empty() ? cv::Size() : frames_.front().size(); }
   std::string name() const override { return name_; }
-  std::string content_key() const override {
-    std::uint64_t h = 0xcbf29ce484222325ull;
+  Key key() const override {
+    KeyMaker maker;
+    maker.add(rate_.str());
     for (const auto& frame : frames_)
-      for (int y = 0; y < frame.rows; ++y) {
-        const auto* row = frame.ptr<unsigned char>(y);
-        for (std::size_t x = 0; x < frame.cols * frame.elemSize(); ++x) h = (h ^ row[x]) * 0x100000001b3ull;
-      }
-    return rate_.str() + ":" + std::to_string(frames_.size()) + ":" + std::to_string(h);
+      for (int y = 0; y < frame.rows; ++y)
+        maker.add({frame.ptr<char>(y), static_cast<std::size_t>(frame.cols) * frame.elemSize()});
+    return maker.key();
   }
   std::unique_ptr<Reader> open() const override { return std::make_unique<MemoryReader>(frames_); }
 
@@ -78,6 +77,12 @@ Video video_from_frames(std::vector<cv::Mat> frames, Rational rate, std::string 
 }
 
 void fields(Archive& ar, Video& v) {
+  if (ar.hashing()) {
+    Key key = v.source ? v.source->key() : Key();
+    ar("source", key);
+    ar("damaged", v.damaged);
+    return;
+  }
   Rational rate = v.source ? v.source->rate() : Rational(25);
   std::string name = v.source ? v.source->name() : "";
   ar("rate", rate);

@@ -30,7 +30,7 @@ class VideoSource {
   /// Says what it is, for messages: a file name.
   virtual std::string name() const = 0;
   /// Changes whenever the pictures do.
-  virtual std::string content_key() const = 0;
+  virtual Key key() const = 0;
   /// Frames that the decoder complained about.
   virtual std::vector<std::int64_t> decoding_errors() const { return {}; }
 };
@@ -46,7 +46,7 @@ struct Video {
 };
 template <>
 inline constexpr PortType port_type<Video>{"Video", 1};
-/// Loading gives the frames from memory; saving stores them as PNG.
+/// Loading gives the frames from memory; saving stores them as PNG; hashing takes the source's key.
 void fields(Archive& ar, Video& v);
 
 /// A video of frames in memory.

@@ -43,7 +43,7 @@ void describe(Description<NeighboursTrain>& d) {
 }
 
 void describe(Description<NeighboursPredict>& d) {
-  d.type("yardstick.neighbours").summary("mean of the k training frames that sound most alike");
+  d.type("yardstick.neighbours").summary("mean of the k training frames that sound most alike").stored();
   d.input("model").input("audio").output("track");
   d.param("k", &NeighboursPredict::k).at_least(1).doc("1 is the nearest neighbour");
 }

@@ -65,8 +65,8 @@ Whole example() {
   return w;
 }
 
-std::string hash(Whole w) {
-  return content_hash([&](Archive& ar) { fields(ar, w); });
+Key hash(Whole w) {
+  return content_key([&](Archive& ar) { fields(ar, w); });
 }
 
 class ArchiveFile : public testing::Test {

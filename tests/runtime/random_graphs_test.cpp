@@ -4,6 +4,7 @@
 #include "runtime/plan.h"
 #include "tests/runtime/graph_builder.h"
 #include "tests/runtime/toy_nodes.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -86,7 +87,8 @@ class RandomGraph {
   std::vector<Graph::Port> ports_;
 };
 
-std::string fingerprint(const RunResult& result) {
+/// The outputs as text.
+std::string results(const RunResult& result) {
   std::string text;
   const auto put = [&](const std::string& key, const Value& v) {
     text += key + "=" + (v ? std::to_string(v.get<Mark>().bits) : "nothing") + " ";
@@ -96,6 +98,12 @@ std::string fingerprint(const RunResult& result) {
     if (!output.stream) put("", output.value);
     for (const auto& item : output.items) put(item.key, item.value);
   }
+  return text;
+}
+
+/// With the books.
+std::string fingerprint(const RunResult& result) {
+  std::string text = results(result);
   for (const auto& node : result.nodes) {
     text += "\n" + std::to_string(node.calls) + " calls, skipped " + std::to_string(node.skipped);
     for (const auto& c : node.in) text += " in " + std::to_string(c.items) + "/" + std::to_string(c.values);
@@ -129,6 +137,42 @@ TEST(RandomGraphs, BothExecutorsGiveTheSameBits) {
   // The graphs did contain what is hard.
   EXPECT_GT(swept_again, 20u);
   EXPECT_GT(nothings, 100u);
+}
+
+// Kept are the results of types taken by chance; then some entries are lost, some damaged. Whatever lies in the cache,
+// a run gives what it gives without one.
+TEST(RandomGraphs, ACacheChangesNoResult) {
+  const test::TemporaryFolder folder;
+  const Registry all = toy::registry();
+  std::uint64_t loaded = 0, unneeded = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Random chance(seed);
+    Registry registry;
+    for (const auto& name : all.names()) {
+      NodeType type = *all.find(name);
+      type.stored = !type.makes_stream && chance.below(2);
+      registry.add(type);
+    }
+    const RandomGraph random(registry, seed);
+    const auto expected = results(run(random.graph()));
+    Cache cache(folder.path() / std::to_string(seed));
+    RunOptions options;
+    options.cache = &cache;
+    for (int round = 0; round < 4; ++round) {
+      options.executor = chance.below(2) ? Executor::flow : Executor::serial;
+      const auto result = run(random.graph(), options);
+      ASSERT_EQ(results(result), expected) << "seed " << seed << ", round " << round;
+      for (const auto& node : result.nodes) loaded += node.loaded, unneeded += node.unneeded;
+      for (const auto& entry : cache.entries()) {
+        const auto luck = chance.below(round == 0 ? 100 : 4);
+        const std::string name = entry.key.str();
+        if (luck == 0) cache.remove(entry.key);
+        if (luck == 1) std::filesystem::resize_file(cache.folder() / name.substr(0, 2) / name / "entry.json", 20);
+      }
+    }
+  }
+  EXPECT_GT(loaded, 1000u);
+  EXPECT_GT(unneeded, 1000u);
 }
 
 }  // namespace

@@ -9,9 +9,9 @@ extern "C" {
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
+#include "graph/key.h"
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/ffmpeg/decoder.h"
-#include "nodes/media/file_hash.h"
 
 namespace talkgraph {
 namespace {
@@ -137,7 +137,7 @@ class FileVideo final : public VideoSource {
   std::int64_t frames() const override { return static_cast<std::int64_t>(scanned().shown.size()); }
   cv::Size size() const override { return turns_ % 2 ? cv::Size(coded_.height, coded_.width) : coded_; }
   std::string name() const override { return path_; }
-  std::string content_key() const override { return file_hash(path_); }
+  Key key() const override { return file_key(path_); }
   std::vector<std::int64_t> decoding_errors() const override { return scanned().damaged; }
   std::unique_ptr<Reader> open() const override { return std::make_unique<FileReader>(*this); }
 

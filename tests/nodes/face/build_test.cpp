@@ -18,8 +18,8 @@ AppearanceModel build(const Prototypes& p) {
   return BuildAppearance{}(p, context);
 }
 
-std::string hash(AppearanceModel m) {
-  return content_hash([&](Archive& ar) { fields(ar, m); });
+Key hash(AppearanceModel m) {
+  return content_key([&](Archive& ar) { fields(ar, m); });
 }
 
 TEST(BuildAppearance, ReconstructsPrototypesWithinTheVarianceKept) {

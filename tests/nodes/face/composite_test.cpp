@@ -165,7 +165,7 @@ TEST(SideBySide, HasTheShorterLengthAndEvenSides) {
   EXPECT_EQ(frames[0].cols % 2 + frames[0].rows % 2, 0);
   EXPECT_EQ(frames[0].at<cv::Vec3b>(frames[0].rows - 1, frames[0].cols - 1), cv::Vec3b(1, 2, 3));
   EXPECT_EQ((SideBySide{"", ""}(small, small).source->size()), cv::Size(68, 52));
-  EXPECT_NE(both.source->content_key(), SideBySide{}(talking(2), small).source->content_key());
+  EXPECT_NE(both.source->key(), SideBySide{}(talking(2), small).source->key());
   EXPECT_THROW(SideBySide{}(talking(1), video_from_frames({small.read_all()[0]}, Rational(30))), std::runtime_error);
 }
 
@@ -200,7 +200,7 @@ TEST(Crop, HoldsThePointsOfEveryFrame) {
   EXPECT_EQ(frames[2].at<cv::Vec3b>(0, 0), cv::Vec3b(17, 7));
   EXPECT_EQ(Crop({1}, 0)(video, corners({{20, 10}, {25, 15}})).read_all()[0].at<cv::Vec3b>(0, 0), cv::Vec3b(30, 14));
   EXPECT_EQ(Crop({}, 10)(video, corners({{20, 10}})).source->size(), cv::Size(60, 40));
-  EXPECT_NE(part.source->content_key(), video.source->content_key());
+  EXPECT_NE(part.source->key(), video.source->key());
 }
 
 TEST(Crop, RefusesWhatHoldsNothing) {

@@ -239,7 +239,7 @@ TEST(Sgpdm, IsTheSameAfterSavingAndLoading) {
   const auto path = folder.file("sgpdm.h5");
   fields(*hdf5_writer(path), model);
   fields(*hdf5_reader(path), loaded);
-  const auto hash = [](Sgpdm& m) { return content_hash([&](Archive& ar) { fields(ar, m); }); };
+  const auto hash = [](Sgpdm& m) { return content_key([&](Archive& ar) { fields(ar, m); }); };
   EXPECT_EQ(hash(model), hash(loaded));
   EXPECT_EQ(loaded.visual.kernel.terms.size(), 3u);
 }

@@ -62,10 +62,10 @@ TEST_F(VideoFileTest, ReadersAreIndependent) {
 TEST_F(VideoFileTest, ContentKeyFollowsTheBytes) {
   if (!built_with_ffmpeg) GTEST_SKIP() << "built without FFmpeg";
   const std::string file = clip(5, ClipFormat::mp4);
-  const std::string key = open_video(file).source->content_key();
+  const Key key = open_video(file).source->key();
   std::filesystem::copy(file, path("copy.mp4"));
-  EXPECT_EQ(open_video(path("copy.mp4")).source->content_key(), key);
-  EXPECT_NE(open_video(clip(6, ClipFormat::mp4)).source->content_key(), key);
+  EXPECT_EQ(open_video(path("copy.mp4")).source->key(), key);
+  EXPECT_NE(open_video(clip(6, ClipFormat::mp4)).source->key(), key);
 }
 
 TEST_F(VideoFileTest, FolderOfPictures) {
@@ -79,9 +79,9 @@ TEST_F(VideoFileTest, FolderOfPictures) {
   ASSERT_EQ(pictures.size(), 5u);
   EXPECT_EQ(cv::norm(pictures[2], test_picture(9), cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(pictures[3], test_picture(10), cv::NORM_INF), 0);
-  const std::string key = video.source->content_key();
+  const Key key = video.source->key();
   cv::imwrite(path("frame9.png"), test_picture(8));
-  EXPECT_NE(video.source->content_key(), key);
+  EXPECT_NE(video.source->key(), key);
 }
 
 TEST_F(VideoFileTest, FolderErrors) {

@@ -244,8 +244,8 @@ TEST(BuiltinSpeaker, TheSameSeedIsTheSameSpeakerAnotherIsNot) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     const auto &x = a[i].value, &y = b[i].value;
     EXPECT_EQ(x.landmarks->frames, y.landmarks->frames);
-    EXPECT_EQ(x.video().source->content_key(), y.video().source->content_key());
-    EXPECT_NE(x.video().source->content_key(), c[i].value.video().source->content_key());
+    EXPECT_EQ(x.video().source->key(), y.video().source->key());
+    EXPECT_NE(x.video().source->key(), c[i].value.video().source->key());
     EXPECT_LE((x.audio().samples - y.audio().samples).cwiseAbs().maxCoeff(), 1.0 / 32768);
   }
 }

@@ -1,0 +1,245 @@
+#include "runtime/cache.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "graph/output_file.h"
+
+namespace talkgraph {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Raised when the layout of entries or the making of keys changes: older entries are then out of reach.
+constexpr const char* version = "v1";
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What was built for an entry, or dropped from it, and is gone when this goes.
+class Workshop {
+ public:
+  explicit Workshop(fs::path path) : path_(std::move(path)) {}
+  ~Workshop() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Regular files below a folder, relative to it, sorted.
+std::vector<std::string> files_below(const fs::path& folder) {
+  std::vector<std::string> files;
+  if (!fs::exists(folder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), folder).string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string output_file(std::size_t port) { return fmt::format("{}.h5", port); }
+
+void save(const fs::path& file, const Value& value) {
+  const auto archive = hdf5_writer(file.string());
+  // An archive that saves does not change what it visits.
+  value.type().visit(*archive, const_cast<void*>(value.data()));
+}
+
+Value load(const fs::path& file, const TypeInfo& type) {
+  auto data = type.make();
+  const auto archive = hdf5_reader(file.string());
+  type.visit(*archive, data.get());
+  return Value(std::move(data), &type);
+}
+
+/// Size and checksum of every file of an entry but entry.json.
+Json inventory(const fs::path& entry) {
+  Json files = Json::object();
+  for (const auto& name : files_below(entry))
+    if (name != "entry.json")
+      files[name] = {{"bytes", fs::file_size(entry / name)}, {"key", file_key(entry / name).str()}};
+  return files;
+}
+
+std::string sum_of(Json entry) {
+  entry.erase("sum");
+  return KeyMaker().add(entry.dump()).key().str();
+}
+
+/// The process whose number stands in the name of a work folder is gone.
+bool abandoned(const fs::path& work) {
+  const int pid = std::atoi(work.filename().c_str());
+  return pid > 0 && kill(pid, 0) != 0 && errno == ESRCH;
+}
+
+std::optional<Key> key_in(const std::string& name) {
+  if (name.size() != 32 || name.find_first_not_of("0123456789abcdef") != std::string::npos) return {};
+  return Key{std::stoull(name.substr(0, 16), nullptr, 16), std::stoull(name.substr(16), nullptr, 16)};
+}
+
+}  // namespace
+
+Cache::Cache(fs::path folder, std::uint64_t limit) : folder_(fs::absolute(folder) / version), limit_(limit) {
+  std::error_code error;
+  fs::create_directories(folder_ / "work", error);
+  if (error)
+    throw std::runtime_error(fmt::format("the cache {} cannot be made: {}", folder_.string(), error.message()));
+  if (access(folder_.c_str(), W_OK) != 0)
+    throw std::runtime_error(fmt::format("the cache {} may not be written", folder_.string()));
+  for (const auto& work : fs::directory_iterator(folder_ / "work", error))
+    if (abandoned(work.path())) fs::remove_all(work.path(), error);
+}
+
+fs::path Cache::default_folder() {
+  const auto in = [](const char* name) { return std::getenv(name) ? fs::path(std::getenv(name)) : fs::path(); };
+  if (const auto own = in("TALKGRAPH_CACHE"); !own.empty()) return own;
+  if (const auto all = in("XDG_CACHE_HOME"); !all.empty()) return all / "talkgraph";
+  const auto home = in("HOME");
+  return (home.empty() ? fs::temp_directory_path() : home / ".cache") / "talkgraph";
+}
+
+fs::path Cache::place(const Key& key) const {
+  const std::string name = key.str();
+  return folder_ / name.substr(0, 2) / name;
+}
+
+fs::path Cache::work_folder() const {
+  std::string name = (folder_ / "work" / fmt::format("{}-XXXXXX", getpid())).string();
+  if (!mkdtemp(name.data()))
+    throw std::runtime_error(fmt::format("the cache {} cannot be written: {}", folder_.string(), std::strerror(errno)));
+  return name;
+}
+
+bool Cache::has(const Key& key) const {
+  const fs::path file = place(key) / "entry.json";
+  return utimensat(AT_FDCWD, file.c_str(), nullptr, 0) == 0;
+}
+
+void Cache::damaged(const Key& key, const std::string& what) const {
+  remove(key);
+  throw Damaged(fmt::format("the cache entry {} {}; it is made anew", place(key).string(), what));
+}
+
+Json Cache::read_entry(const Key& key) const {
+  const Json entry = Json::parse(read_text(place(key) / "entry.json"), nullptr, false);
+  if (!entry.is_object() || !entry.contains("sum") || entry["sum"] != sum_of(entry)) return {};
+  if (entry.value("key", "") != key.str()) return {};
+  return entry;
+}
+
+std::string Cache::verify(const Key& key) const {
+  const Json entry = read_entry(key);
+  if (entry.is_null()) return "is not one, or its entry.json was altered";
+  try {
+    const Json there = inventory(place(key));
+    for (const auto& [name, file] : entry["files"].items()) {
+      if (!there.contains(name)) return "lacks " + name;
+      if (there[name] != file) return fmt::format("has a damaged file, {}", name);
+    }
+    return there.size() == entry["files"].size() ? "" : "holds files that do not belong to it";
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+}
+
+Cache::Result Cache::load(const Key& key, const NodeType& type, const fs::path& folder) const {
+  if (const auto wrong = verify(key); !wrong.empty()) damaged(key, wrong);
+  const Json entry = read_entry(key);
+  Result result;
+  result.outputs.resize(type.outputs.size());
+  result.seconds = entry["seconds"].get<double>();
+  result.warnings = entry["warnings"].get<std::vector<std::string>>();
+  const fs::path from = place(key);
+  try {
+    for (std::size_t p = 0; p < type.outputs.size(); ++p)
+      if (entry["files"].contains(output_file(p)))
+        result.outputs[p] = talkgraph::load(from / output_file(p), *type.outputs[p].info);
+  } catch (const std::exception& e) {
+    damaged(key, e.what());
+  }
+  if (fs::exists(from / "files")) put_files(from / "files", folder);
+  return result;
+}
+
+void Cache::store(const Key& key, const Json& about, const Result& result, const fs::path& written) {
+  const Workshop work(work_folder());
+  const fs::path made = work.path() / key.str();
+  fs::create_directory(made);
+  for (std::size_t p = 0; p < result.outputs.size(); ++p)
+    if (result.outputs[p]) save(made / output_file(p), result.outputs[p]);
+  if (!written.empty()) fs::copy(written, made / "files", fs::copy_options::recursive);
+  Json entry = {{"key", key.str()},
+                {"about", about},
+                {"seconds", result.seconds},
+                {"warnings", result.warnings},
+                {"files", inventory(made)}};
+  entry["sum"] = sum_of(entry);
+  write_file(made / "entry.json", entry.dump(1));
+  fs::create_directories(place(key).parent_path());
+  std::uint64_t bytes = 0;
+  for (const auto& [name, file] : entry["files"].items()) bytes += file["bytes"].get<std::uint64_t>();
+  std::error_code error;
+  fs::rename(made, place(key), error);
+  if (error && error != std::errc::directory_not_empty && error != std::errc::file_exists)
+    throw fs::filesystem_error("the cache cannot keep a result", place(key), error);
+  // Looking at all entries is not free: done whenever another tenth of the limit has come.
+  if ((grown_ += bytes) < limit_ / 10) return;
+  grown_ = 0;
+  prune(limit_);
+}
+
+void Cache::remove(const Key& key) const {
+  std::error_code ignored;
+  const Workshop work(work_folder());
+  fs::rename(place(key), work.path() / "removed", ignored);
+}
+
+std::vector<Cache::Entry> Cache::entries() const {
+  std::vector<Entry> all;
+  std::error_code error;
+  for (const auto& group : fs::directory_iterator(folder_, error)) {
+    if (group.path().filename().string().size() != 2) continue;
+    for (const auto& found : fs::directory_iterator(group.path(), error)) {
+      const auto key = key_in(found.path().filename().string());
+      const auto used = fs::last_write_time(found.path() / "entry.json", error);
+      if (!key || error) continue;
+      Entry entry{*key, {}, 0, used};
+      for (const auto& name : files_below(found.path())) entry.bytes += fs::file_size(found.path() / name, error);
+      const Json json = read_entry(*key);
+      if (!json.is_null()) entry.about = json["about"];
+      all.push_back(std::move(entry));
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
+  return all;
+}
+
+std::uint64_t Cache::prune(std::uint64_t bytes) const {
+  const auto all = entries();
+  std::uint64_t total = 0, freed = 0;
+  for (const auto& entry : all) total += entry.bytes;
+  for (const auto& entry : all) {
+    if (total - freed <= bytes) break;
+    remove(entry.key);
+    freed += entry.bytes;
+  }
+  return freed;
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,40 @@
+#include "runtime/keeper.h"
+
+#include <fmt/format.h>
+
+#include "graph/output_file.h"
+
+namespace talkgraph {
+
+namespace fs = std::filesystem;
+
+Keeper::Keeper(const Graph& graph, Cache& cache, fs::path folder, const std::atomic<bool>* cancel,
+               std::function<void(std::string_view)> warn)
+    : graph_(graph),
+      cache_(cache),
+      folder_(std::move(folder)),
+      forecast_(graph, cache, cancel),
+      warn_(std::move(warn)) {}
+
+bool Keeper::keeps(int n) const {
+  const auto& type = *graph_.nodes[static_cast<std::size_t>(n)].type;
+  return type.stored || type.sink;
+}
+
+Cache::Result Keeper::load(int n, const std::string& item) const {
+  return cache_.load(forecast_.key(n, item), *graph_.nodes[static_cast<std::size_t>(n)].type, folder_);
+}
+
+void Keeper::keep(int n, const std::string& item, const Cache::Result& result, const fs::path& written) {
+  const Key key = forecast_.key(n, item);
+  if (!key || full_) return;
+  try {
+    cache_.store(key, forecast_.about(n, item), result, written);
+  } catch (const std::exception& e) {
+    if (!full_.exchange(true)) warn_(fmt::format("from here on no results are kept for the next run: {}", e.what()));
+  }
+}
+
+void Keeper::deliver(const fs::path& desk) const { put_files(desk, folder_); }
+
+}  // namespace talkgraph

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/forecast.h"
+
+namespace talkgraph {
+
+/// A run's dealings with the cache: what need not be called, and what is kept of what was.
+class Keeper {
+ public:
+  /// `warn` is told, once, if results cannot be kept.
+  Keeper(const Graph& graph, Cache& cache, std::filesystem::path folder, const std::atomic<bool>* cancel,
+         std::function<void(std::string_view)> warn);
+
+  Forecast& forecast() { return forecast_; }
+  const Forecast& forecast() const { return forecast_; }
+
+  /// Whether results of a node are kept.
+  bool keeps(int node) const;
+  /// Throws Cache::Damaged.
+  Cache::Result load(int node, const std::string& item) const;
+  /// Keeps a result; `written` holds what a sink wrote, or is empty. What cannot be kept is not an error of the run.
+  void keep(int node, const std::string& item, const Cache::Result& result, const std::filesystem::path& written);
+
+  /// An empty folder for a sink to write to.
+  std::filesystem::path desk() const { return cache_.work_folder(); }
+  /// Puts what a sink wrote into the run folder.
+  void deliver(const std::filesystem::path& desk) const;
+
+ private:
+  const Graph& graph_;
+  Cache& cache_;
+  const std::filesystem::path folder_;
+  Forecast forecast_;
+  std::function<void(std::string_view)> warn_;
+  std::atomic<bool> full_{false};
+};
+
+}  // namespace talkgraph

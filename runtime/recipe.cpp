@@ -1,0 +1,47 @@
+#include "runtime/recipe.h"
+
+#include <fmt/format.h>
+
+namespace talkgraph {
+namespace {
+
+Json content_of(const Json& path) {
+  if (path.is_array()) {
+    Json all = Json::array();
+    for (const auto& one : path) all.push_back(content_of(one));
+    return all;
+  }
+  const auto name = path.is_string() ? path.get<std::string>() : std::string();
+  return name.empty() ? Json() : Json(file_key(name).str());
+}
+
+/// Paths give way to what lies there.
+Json canonical(const Json& params, const std::vector<ParameterSpec>& specs) {
+  Json out = Json::object();
+  for (const auto& spec : specs) {
+    const Json value = params.value(spec.name, Json());
+    if (spec.type.ends_with("path"))
+      out[spec.name] = content_of(value);
+    else if (!spec.members.empty() && value.is_object())
+      out[spec.name] = canonical(value, spec.members);
+    else
+      out[spec.name] = value;
+  }
+  return out;
+}
+
+}  // namespace
+
+Json recipe(const Graph& graph, int index) {
+  const auto& node = graph.nodes[static_cast<std::size_t>(index)];
+  Json out = {{"type", node.type->name}, {"version", node.type->version}};
+  for (const auto& port : node.type->inputs)
+    out["inputs"][port.name] = fmt::format("{} {}", port.type.name, port.type.version);
+  for (const auto& port : node.type->outputs)
+    out["outputs"][port.name] = fmt::format("{} {}", port.type.name, port.type.version);
+  out["params"] = canonical(node.functor->parameters(), node.type->parameters);
+  if (node.type->uses_random) out["seed"] = graph.seed;
+  return out;
+}
+
+}  // namespace talkgraph
