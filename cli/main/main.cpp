@@ -4,7 +4,6 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <opencv2/core.hpp>
 
 #include "cli/cache.h"
@@ -12,6 +11,8 @@
 #include "cli/registry.h"
 #include "cli/run.h"
 #include "cli/speak.h"
+#include "graph/output_file.h"
+#include "graph/schema.h"
 #include "nodes/model/save.h"
 
 extern "C" void openblas_set_num_threads(int);
@@ -43,6 +44,14 @@ int check(const std::vector<std::string>& files, const Registry& registry, const
   return code;
 }
 
+/// To a file, or to standard output where none is named.
+void deliver(const std::string& text, const std::string& file) {
+  if (file.empty())
+    fmt::print("{}", text);
+  else
+    write_file(file, text);
+}
+
 Cache open_cache(const RunCommand& run) {
   return Cache(run.cache.empty() ? Cache::default_folder() : run.cache, run.cache_limit);
 }
@@ -53,9 +62,7 @@ int draw(const std::string& file, const Registry& registry, const std::vector<st
   if (!graph) return usage;
   const std::string text = format == "mermaid" ? draw_mermaid(*graph) : draw_dot(*graph);
   if (format != "svg") {
-    if (output.empty()) return fmt::print("{}", text), success;
-    std::ofstream out(output);
-    return out << text && out.flush() ? success : (fmt::print(stderr, "{}: cannot be written\n", output), failed);
+    return deliver(text, output), success;
   }
   std::string command = "dot -Tsvg";
   if (!output.empty()) command += " -o '" + CLI::detail::find_and_replace(output, "'", "'\\''") + "'";
@@ -136,6 +143,9 @@ int main(int argc, char** argv) {
   auto* node_app = app.add_subcommand("node", "show one node type: ports, parameters, an example");
   node_app->add_option("type", type, "such as speech.mel")->required();
 
+  auto* schema_app = app.add_subcommand("schema", "write the JSON Schema of graphs, for editors");
+  schema_app->add_option("-o,--output", output, "file (default: standard output)");
+
   auto* draw_app = app.add_subcommand("draw", "draw a graph");
   draw_app->add_option("graph", graph, "graph file")->required();
   draw_app->add_option("--format", format, "svg, dot or mermaid")->check(CLI::IsMember({"svg", "dot", "mermaid"}));
@@ -159,6 +169,7 @@ int main(int argc, char** argv) {
       if (*speak_app) return speak(speech, registry);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
+      if (*schema_app) return deliver(json_schema(registry).dump(1) + "\n", output), success;
       if (*node_app) return fmt::print("{}", show_node(registry, type)), success;
       return draw(graph, registry, sets, format, output);
     };

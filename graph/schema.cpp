@@ -1,0 +1,181 @@
+#include "graph/schema.h"
+
+#include <fmt/format.h>
+
+namespace talkgraph {
+namespace {
+
+Json refer(const std::string& definition) { return {{"$ref", "#/definitions/" + definition}}; }
+
+Json text(std::string description) { return {{"type", "string"}, {"description", std::move(description)}}; }
+
+Json object(Json properties, const std::vector<std::string>& required = {}) {
+  Json out = {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+  if (!required.empty()) out["required"] = required;
+  return out;
+}
+
+Json object_of(Json value) { return {{"type", "object"}, {"additionalProperties", std::move(value)}}; }
+
+void set_range(Json& schema, const Range& range) {
+  if (std::isfinite(range.low)) schema[range.low_open ? "exclusiveMinimum" : "minimum"] = range.low;
+  if (std::isfinite(range.high)) schema["maximum"] = range.high;
+}
+
+Json parameters_schema(const std::vector<ParameterSpec>& specs);
+
+/// Of a value written out; `type` as in ParameterSpec.
+Json value_schema(const std::string& type, const ParameterSpec& spec) {
+  const std::string list = "list of ";
+  if (type.starts_with(list)) return {{"type", "array"}, {"items", value_schema(type.substr(list.size()), spec)}};
+  if (type == "boolean") return {{"type", "boolean"}};
+  if (type == "choice") return {{"enum", spec.choices}};
+  if (type == "graph")
+    return {
+        {"anyOf",
+         {text("a graph file"), object({{"graph", text("a graph file")}, {"params", object_of(true)}}, {"graph"})}}};
+  if (type == "object") return parameters_schema(spec.members);
+  if (type == "ratio") {
+    Json number = {{"type", "number"}};
+    set_range(number, spec.range);
+    return {{"anyOf", {number, {{"type", "string"}, {"pattern", R"(^[-+]?\d+(\.\d+)?(/\d+)?$)"}}}}};
+  }
+  if (type == "integer" || type == "number") {
+    Json number = {{"type", type}};
+    set_range(number, spec.range);
+    return number;
+  }
+  return {{"type", "string"}};
+}
+
+/// A parameter: its value, or the name of a graph's parameter.
+Json parameter_schema(const ParameterSpec& spec) {
+  Json value = value_schema(spec.type, spec);
+  Json out;
+  if (value.contains("type") && value["type"] == "string") {
+    out = std::move(value);
+  } else {
+    Json choices = {std::move(value), refer("parameter")};
+    if (spec.initial.is_null() && !spec.required) choices.push_back({{"type", "null"}});
+    out["anyOf"] = std::move(choices);
+  }
+  std::string doc = spec.doc;
+  if (!spec.unit.empty()) doc += fmt::format("{}[{}]", doc.empty() ? "" : " ", spec.unit);
+  if (!doc.empty()) out["description"] = doc;
+  if (!spec.required) out["default"] = spec.initial;
+  return out;
+}
+
+Json parameters_schema(const std::vector<ParameterSpec>& specs) {
+  Json properties = Json::object();
+  std::vector<std::string> required;
+  for (const auto& spec : specs) {
+    properties[spec.name] = parameter_schema(spec);
+    if (spec.required) required.push_back(spec.name);
+  }
+  return object(std::move(properties), required);
+}
+
+Json port_schema(const PortSpec& port) {
+  const bool collects = port.kind == PortSpec::Kind::collected;
+  std::string description =
+      collects ? fmt::format("all of a stream of {}, or several by name", port.type.name) : std::string(port.type.name);
+  if (!port.doc.empty()) description += ": " + port.doc;
+  Json out = refer(collects ? "collected" : "source");
+  // Beside a $ref nothing counts in draft 7.
+  return {{"description", description}, {"allOf", {std::move(out)}}};
+}
+
+std::string names_of(const std::vector<PortSpec>& ports) {
+  std::string names;
+  for (const auto& port : ports)
+    names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", port.name, port.type.name);
+  return names;
+}
+
+Json node_schema(const NodeType& type) {
+  Json in = Json::object();
+  std::vector<std::string> wired;
+  for (const auto& port : type.inputs) {
+    in[port.name] = port_schema(port);
+    if (port.kind != PortSpec::Kind::optional) wired.push_back(port.name);
+  }
+  const bool has_required =
+      std::any_of(type.parameters.begin(), type.parameters.end(), [](const ParameterSpec& p) { return p.required; });
+  std::vector<std::string> required = {"type"};
+  if (!wired.empty()) required.emplace_back("in");
+  if (has_required) required.emplace_back("params");
+  Json out = object({{"type", {{"const", type.name}}},
+                     {"description", text("for readers")},
+                     {"in", object(std::move(in), wired)},
+                     {"params", parameters_schema(type.parameters)}},
+                    required);
+  out["description"] = fmt::format("{}. Gives {}.", type.summary, names_of(type.outputs));
+  return out;
+}
+
+/// By the type that a node names, so that an editor complains of that node's parameters and no other's.
+Json any_node(const Registry& registry) {
+  Json types = Json::array(), cases = Json::array();
+  for (const auto& name : registry.names()) {
+    types.push_back({{"const", name}, {"description", registry.find(name)->summary}});
+    cases.push_back({{"if", {{"properties", {{"type", {{"const", name}}}}}, {"required", {"type"}}}},
+                     {"then", refer("node:" + name)}});
+  }
+  cases.push_back({{"if", {{"required", {"graph"}}}}, {"then", refer("graphNode")}});
+  return {{"type", "object"},
+          {"properties",
+           {{"type", {{"description", "node type; talkgraph nodes lists them"}, {"anyOf", types}}},
+            {"graph", text("a graph file, used as a node")},
+            {"description", text("for readers")},
+            {"in", {{"type", "object"}}},
+            {"params", {{"type", "object"}}}}},
+          {"oneOf", {{{"required", {"type"}}}, {{"required", {"graph"}}}}},
+          {"allOf", cases}};
+}
+
+Json input_types(const Registry& registry) {
+  Json names = Json::array();
+  for (const auto& type : registry.port_types()) {
+    names.push_back(type.name);
+    names.push_back(fmt::format("Stream<{}>", type.name));
+  }
+  return {{"enum", names}};
+}
+
+}  // namespace
+
+Json json_schema(const Registry& registry) {
+  Json definitions = {
+      {"parameter", {{"type", "string"}, {"pattern", R"(^\$\{[^}]+\}$)"}, {"description", "a parameter of the graph"}}},
+      {"source", text("NODE.PORT, or NODE where it has one output, or inputs.NAME")},
+      {"collected", {{"anyOf", {refer("source"), object_of(refer("source"))}}}},
+      {"inputType", input_types(registry)},
+      {"graphNode", object({{"graph", text("a graph file, from the folder of this one")},
+                             {"description", text("for readers")},
+                             {"in", object_of({{"anyOf", {refer("source"), object_of(refer("source"))}}})},
+                             {"params", object_of(true)}},
+                            {"graph"})},
+      {"node", any_node(registry)}};
+  for (const auto& name : registry.names()) definitions["node:" + name] = node_schema(*registry.find(name));
+  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
+                 {"title", "talkgraph graph"},
+                 {"description", "Nodes and how they are wired; docs/graphs.md explains"}};
+  schema.update(
+      object({{"$schema", text("this schema")},
+              {"description", text("what the graph does")},
+              {"parameters", object_of(object({{"default", Json(true)}, {"doc", text("what it is")}}))},
+              {"inputs", object_of({{"anyOf",
+                                     {refer("inputType"), object({{"type", refer("inputType")},
+                                                                 {"optional", {{"type", "boolean"}}},
+                                                                 {"doc", text("what it is")}},
+                                                                {"type"})}}})},
+              {"nodes", object_of(refer("node"))},
+              {"outputs", object_of(refer("source"))},
+              {"seed", {{"anyOf", {{{"type", "integer"}, {"minimum", 0}}, refer("parameter")}}, {"default", 1}}}},
+             {"nodes"}));
+  schema["definitions"] = std::move(definitions);
+  return schema;
+}
+
+}  // namespace talkgraph
