@@ -5,6 +5,8 @@
 namespace talkgraph {
 namespace {
 
+constexpr const char* parameter_pattern = R"(^\$\{[^}]+\}$)";
+
 Json refer(const std::string& definition) { return {{"$ref", "#/definitions/" + definition}}; }
 
 Json text(std::string description) { return {{"type", "string"}, {"description", std::move(description)}}; }
@@ -30,34 +32,29 @@ Json value_schema(const std::string& type, const ParameterSpec& spec) {
   if (type.starts_with(list)) return {{"type", "array"}, {"items", value_schema(type.substr(list.size()), spec)}};
   if (type == "boolean") return {{"type", "boolean"}};
   if (type == "choice") return {{"enum", spec.choices}};
-  if (type == "graph")
-    return {
-        {"anyOf",
-         {text("a graph file"), object({{"graph", text("a graph file")}, {"params", object_of(true)}}, {"graph"})}}};
   if (type == "object") return parameters_schema(spec.members);
-  if (type == "ratio") {
-    Json number = {{"type", "number"}};
-    set_range(number, spec.range);
-    return {{"anyOf", {number, {{"type", "string"}, {"pattern", R"(^[-+]?\d+(\.\d+)?(/\d+)?$)"}}}}};
-  }
-  if (type == "integer" || type == "number") {
-    Json number = {{"type", type}};
+  if (type == "graph") return object({{"graph", text("a graph file")}, {"params", object_of(true)}}, {"graph"});
+  if (type == "ratio" || type == "integer" || type == "number") {
+    Json number = {{"type", type == "ratio" ? "number" : type}};
     set_range(number, spec.range);
     return number;
   }
   return {{"type", "string"}};
 }
 
-/// A parameter: its value, or the name of a graph's parameter.
+/// A parameter: its value, or the name of a graph's parameter. A limit of numbers does not bind texts, nor a pattern of
+/// texts numbers, so one schema holds both and a validator can say which limit was passed.
 Json parameter_schema(const ParameterSpec& spec) {
-  Json value = value_schema(spec.type, spec);
-  Json out;
-  if (value.contains("type") && value["type"] == "string") {
-    out = std::move(value);
-  } else {
-    Json choices = {std::move(value), refer("parameter")};
-    if (spec.initial.is_null() && !spec.required) choices.push_back({{"type", "null"}});
-    out["anyOf"] = std::move(choices);
+  Json out = value_schema(spec.type, spec);
+  if (spec.type == "choice") {
+    out = {{"anyOf", {std::move(out), refer("parameter")}}};
+  } else if (out["type"] != "string") {
+    out["type"] = {out["type"], "string"};
+    if (spec.type == "ratio")
+      out["pattern"] = R"(^(\$\{[^}]+\}|[-+]?\d+(\.\d+)?(/\d+)?)$)";
+    else if (spec.type != "graph")
+      out["pattern"] = parameter_pattern;
+    if (spec.initial.is_null() && !spec.required) out["type"].push_back("null");
   }
   std::string doc = spec.doc;
   if (!spec.unit.empty()) doc += fmt::format("{}[{}]", doc.empty() ? "" : " ", spec.unit);
@@ -147,15 +144,15 @@ Json input_types(const Registry& registry) {
 
 Json json_schema(const Registry& registry) {
   Json definitions = {
-      {"parameter", {{"type", "string"}, {"pattern", R"(^\$\{[^}]+\}$)"}, {"description", "a parameter of the graph"}}},
+      {"parameter", {{"type", "string"}, {"pattern", parameter_pattern}, {"description", "a parameter of the graph"}}},
       {"source", text("NODE.PORT, or NODE where it has one output, or inputs.NAME")},
       {"collected", {{"anyOf", {refer("source"), object_of(refer("source"))}}}},
       {"inputType", input_types(registry)},
       {"graphNode", object({{"graph", text("a graph file, from the folder of this one")},
-                             {"description", text("for readers")},
-                             {"in", object_of({{"anyOf", {refer("source"), object_of(refer("source"))}}})},
-                             {"params", object_of(true)}},
-                            {"graph"})},
+                            {"description", text("for readers")},
+                            {"in", object_of({{"anyOf", {refer("source"), object_of(refer("source"))}}})},
+                            {"params", object_of(true)}},
+                           {"graph"})},
       {"node", any_node(registry)}};
   for (const auto& name : registry.names()) definitions["node:" + name] = node_schema(*registry.find(name));
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
@@ -167,9 +164,9 @@ Json json_schema(const Registry& registry) {
               {"parameters", object_of(object({{"default", Json(true)}, {"doc", text("what it is")}}))},
               {"inputs", object_of({{"anyOf",
                                      {refer("inputType"), object({{"type", refer("inputType")},
-                                                                 {"optional", {{"type", "boolean"}}},
-                                                                 {"doc", text("what it is")}},
-                                                                {"type"})}}})},
+                                                                  {"optional", {{"type", "boolean"}}},
+                                                                  {"doc", text("what it is")}},
+                                                                 {"type"})}}})},
               {"nodes", object_of(refer("node"))},
               {"outputs", object_of(refer("source"))},
               {"seed", {{"anyOf", {{{"type", "integer"}, {"minimum", 0}}, refer("parameter")}}, {"default", 1}}}},

@@ -52,7 +52,7 @@ TEST_F(Schema, FindsWhatIsWrong) {
   EXPECT_THAT(
       complaints_of(
           R"({ "nodes": { "m": { "type": "speech.mel", "in": { "spectrum": "s" }, "params": { "filters": -1 } } } })"),
-      HasSubstr("-1"));
+      HasSubstr("-1 is less than the minimum of 1"));
   EXPECT_THAT(
       complaints_of(
           R"({ "nodes": { "m": { "type": "speech.mel", "in": { "spectrum": "s" }, "params": { "filtres": 20 } } } })"),
