@@ -25,7 +25,7 @@ bool reads_nothing(const Graph::Node& node) {
 Forecast::Forecast(const Graph& graph, const Cache& cache, const std::atomic<bool>* cancel)
     : graph_(graph), cache_(cache) {
   const auto count = graph.nodes.size();
-  recipes_.resize(count);
+  recipes_.resize(count, Json::object());
   recipe_keys_.resize(count);
   ranks_.resize(count);
   keys_.resize(count);
@@ -52,7 +52,7 @@ void Forecast::make_keys(int n, const std::atomic<bool>* cancel) {
   const bool source = node(n).type->makes_stream;
   // The items of a source without inputs have keys of their own: its paths need not be read.
   if (!source || !domain(n).known) {
-    recipes_[at(n)] = recipe(graph_, n);
+    recipes_[at(n)] = talkgraph::recipe(graph_, n);
     recipe_keys_[at(n)] = KeyMaker().add(recipes_[at(n)].dump()).key();
   }
   if (source) {
@@ -256,6 +256,35 @@ Key Forecast::key(int n, const std::string& item) const {
   if (node(n).type->makes_stream || node(n).domain < 0) return keys_[at(n)];
   const Row* r = row(n, item);
   return r ? r->keys[rank(n)] : Key();
+}
+
+std::vector<std::pair<std::string, Need>> Forecast::needs(int n) const {
+  if (node(n).type->makes_stream || node(n).domain < 0) return {{"", needs_[at(n)]}};
+  std::vector<std::pair<std::string, Need>> all;
+  for (const auto& row : domain(node(n).domain).rows) all.emplace_back(row.item, row.needs[rank(n)]);
+  return all;
+}
+
+Forecast::Counts Forecast::counts(int n) const {
+  Counts counts;
+  auto all = needs(n);
+  if (node(n).domain >= 0 && !domain(node(n).domain).known) {
+    counts.foreseen = false;
+    all = {{any_item, domain(node(n).domain).whole.needs[rank(n)]}};
+  }
+  for (const auto& [item, need] : all)
+    ++(need == Need::call ? counts.call : need == Need::load ? counts.load : counts.skip);
+  return counts;
+}
+
+std::vector<std::pair<std::string, Key>> Forecast::items(int source) const {
+  std::vector<std::pair<std::string, Key>> all;
+  for (const auto& row : domain(source).rows) {
+    KeyMaker made;
+    for (const auto& key : row.made) made.add(key);
+    all.emplace_back(row.item, made.key());
+  }
+  return all;
 }
 
 Json Forecast::about(int n, const std::string& item) const {

@@ -39,6 +39,19 @@ class Forecast {
   Key key(int node, const std::string& item) const;
   /// An item that a source has made. Throws std::runtime_error if it differs from what the forecast saw.
   void enter(int source, const std::string& item, const std::vector<Value>& outputs);
+
+  /// How many calls of a node come to what. Items that only the run can know count as one.
+  struct Counts {
+    std::size_t call = 0, load = 0, skip = 0;
+    bool foreseen = true;
+  };
+  Counts counts(int node) const;
+  /// Of a node that runs once, one of the empty item; of others, one an item that is known.
+  std::vector<std::pair<std::string, Need>> needs(int node) const;
+  /// Of a source, where they are known ahead, with keys of what was made.
+  std::vector<std::pair<std::string, Key>> items(int source) const;
+  const Json& recipe(int node) const { return recipes_[static_cast<std::size_t>(node)]; }
+
   /// {"recipe": ..., "item": ..., "inputs": {port: key}}: what key() is made of.
   Json about(int node, const std::string& item) const;
 

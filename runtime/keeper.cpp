@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "graph/output_file.h"
+#include "runtime/why.h"
 
 namespace talkgraph {
 
@@ -14,7 +15,17 @@ Keeper::Keeper(const Graph& graph, Cache& cache, fs::path folder, const std::ato
       cache_(cache),
       folder_(std::move(folder)),
       forecast_(graph, cache, cancel),
-      warn_(std::move(warn)) {}
+      warn_(std::move(warn)) {
+  try {
+    keep_snapshot(cache_, graph_, snapshot(graph_, forecast_));
+  } catch (const std::exception& e) {
+    give_up(e.what());
+  }
+}
+
+void Keeper::give_up(const std::string& why) {
+  if (!full_.exchange(true)) warn_(fmt::format("from here on no results are kept for the next run: {}", why));
+}
 
 bool Keeper::keeps(int n) const {
   const auto& type = *graph_.nodes[static_cast<std::size_t>(n)].type;
@@ -31,7 +42,7 @@ void Keeper::keep(int n, const std::string& item, const Cache::Result& result, c
   try {
     cache_.store(key, forecast_.about(n, item), result, written);
   } catch (const std::exception& e) {
-    if (!full_.exchange(true)) warn_(fmt::format("from here on no results are kept for the next run: {}", e.what()));
+    give_up(e.what());
   }
 }
 

@@ -33,6 +33,8 @@ class Keeper {
   void deliver(const std::filesystem::path& desk) const;
 
  private:
+  void give_up(const std::string& why);
+
   const Graph& graph_;
   Cache& cache_;
   const std::filesystem::path folder_;

@@ -14,6 +14,7 @@
 #include "graph/output_file.h"
 #include "graph/schema.h"
 #include "nodes/model/save.h"
+#include "runtime/why.h"
 
 extern "C" void openblas_set_num_threads(int);
 
@@ -54,6 +55,17 @@ void deliver(const std::string& text, const std::string& file) {
 
 Cache open_cache(const RunCommand& run) {
   return Cache(run.cache.empty() ? Cache::default_folder() : run.cache, run.cache_limit);
+}
+
+int why(const std::string& file, const Registry& registry, const std::vector<std::string>& sets, const RunCommand& run,
+        const std::string& node) {
+  const auto graph = load(file, registry, sets);
+  if (!graph) return usage;
+  const Cache cache = open_cache(run);
+  const Forecast forecast(*graph, cache);
+  fmt::print(
+      "{}", explain(*graph, forecast, last_snapshot(cache, *graph), node.empty() ? std::nullopt : std::optional(node)));
+  return success;
 }
 
 int draw(const std::string& file, const Registry& registry, const std::vector<std::string>& sets,
@@ -115,6 +127,12 @@ int main(int argc, char** argv) {
   for (auto* c : {info_app, verify_app, prune_app})
     c->add_option("--cache", run.cache, "the folder, if not the usual one");
 
+  auto* why_app = app.add_subcommand("why", "what a run would compute, and because of what");
+  why_app->add_option("graph", graph, "graph file")->required();
+  why_app->add_option("node", word, "one node, with its items");
+  why_app->add_option("--set", sets, "path=value")->take_all()->allow_extra_args(false);
+  why_app->add_option("--cache", run.cache, "the folder of kept results, if not the usual one");
+
   auto* speak_app = app.add_subcommand("speak", "animate new speech with a trained model");
   speak_app->add_option("model", speech.model, "model file that a run wrote")->required();
   speak_app->add_option("speech", speech.files, "sound files");
@@ -166,6 +184,7 @@ int main(int argc, char** argv) {
       if (*info_app) return fmt::print("{}", cache_info(open_cache(run))), success;
       if (*verify_app) return cache_verify(open_cache(run)) ? failed : success;
       if (*prune_app) return fmt::print("{} freed\n", size_text(open_cache(run).prune(keep))), success;
+      if (*why_app) return why(graph, registry, sets, run, word);
       if (*speak_app) return speak(speech, registry);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
