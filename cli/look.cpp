@@ -6,6 +6,8 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "graph/differences.h"
+
 namespace talkgraph::cli {
 namespace {
 
@@ -101,6 +103,22 @@ std::string show_node(const Registry& registry, const std::string& name) {
   if (!type->parameters.empty()) out += "  parameters\n";
   parameter_lines(type->parameters, "    ", out);
   return out + "  example\n" + example(*type);
+}
+
+std::string diff_graphs(const Graph& a, const Graph& b) {
+  Json before = a.resolved["nodes"], after = b.resolved["nodes"];
+  std::string out;
+  for (const auto& [name, node] : a.resolved["nodes"].items())
+    if (!after.contains(name))
+      out += fmt::format("- {} ({})\n", name, node["type"].get<std::string>()), before.erase(name);
+  for (const auto& [name, node] : b.resolved["nodes"].items())
+    if (!before.contains(name))
+      out += fmt::format("+ {} ({})\n", name, node["type"].get<std::string>()), after.erase(name);
+  for (const auto& difference : differences(before, after)) out += fmt::format("  {}\n", difference);
+  for (const char* part : {"outputs", "seed"})
+    for (const auto& difference : differences({{part, a.resolved[part]}}, {{part, b.resolved[part]}}))
+      out += fmt::format("  {}\n", difference);
+  return out;
 }
 
 std::string draw_dot(const Graph& graph) {

@@ -15,6 +15,10 @@ std::string list_nodes(const Registry& registry, const std::string& word);
 std::string show_node(const Registry& registry, const std::string& type);
 
 /// A graph as Graphviz text, streams drawn with thick edges, types on the edges.
+/// What graph `b` does differently, a line a difference, once parameters, fragments and defaults are put in; nothing if
+/// they do the same.
+std::string diff_graphs(const Graph& a, const Graph& b);
+
 std::string draw_dot(const Graph& graph);
 std::string draw_mermaid(const Graph& graph);
 

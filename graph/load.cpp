@@ -111,12 +111,57 @@ std::string nearby_graphs(const std::filesystem::path& file) {
   return did_you_mean(file.filename().string(), names);
 }
 
+/// Lays a patch over a value (JSON merge patch, RFC 7396): members are merged, null takes one away, all else replaces.
+/// What is taken away must be there.
+void merge(LocatedJson& base, const LocatedJson& patch, const std::string& at, Diagnostics& diagnostics) {
+  if (!patch.is(Kind::object) || !base.is(Kind::object)) {
+    base = patch;
+    return;
+  }
+  for (const auto& m : patch.members) {
+    auto* there = base.find(m.key);
+    const std::string name = at.empty() ? m.key : at + "." + m.key;
+    if (there && !m.value.is(Kind::null)) {
+      merge(there->value, m.value, name, diagnostics);
+    } else if (there) {
+      std::erase_if(base.members, [&](const auto& old) { return old.key == m.key; });
+    } else if (m.value.is(Kind::null)) {
+      std::vector<std::string> names;
+      for (const auto& old : base.members) names.push_back(old.key);
+      diagnostics.error(m.key_place, fmt::format("null takes \"{}\" away, but the extended graph has none{}", name,
+                                                 did_you_mean(m.key, names)));
+    } else {
+      base.members.push_back(m);
+    }
+  }
+}
+
 /// Opens graphs: substitutes parameters, makes functors, descends into graphs used as nodes.
 class Loader {
  public:
   Loader(const Registry& registry, Diagnostics& diagnostics) : registry_(registry), diagnostics_(diagnostics) {}
 
   Draft draft;
+
+  /// A graph's text; where it extends another graph, that one with this one laid over it.
+  std::optional<LocatedJson> parse_graph(std::shared_ptr<const SourceText> text) {
+    auto json = parse_json(text, diagnostics_);
+    auto* extends = json ? json->find("extends") : nullptr;
+    if (!extends) return json;
+    const auto base_text = read_graph(extends->value);
+    if (!base_text) return {};
+    if (std::find(open_stack_.begin(), open_stack_.end(), base_text->name) != open_stack_.end() ||
+        base_text->name == text->name)
+      return diagnostics_.error(extends->value.place, fmt::format("the graph {} extends itself", base_text->name)),
+             std::nullopt;
+    open_stack_.push_back(text->name);
+    auto base = parse_graph(base_text);
+    open_stack_.pop_back();
+    if (!base) return {};
+    std::erase_if(json->members, [](const auto& m) { return m.key == "extends"; });
+    merge(*base, *json, "", diagnostics_);
+    return base;
+  }
 
   void open_root(LocatedJson json, const LocatedJson* given = nullptr) {
     draft.root = std::make_unique<Scope>();
@@ -220,7 +265,7 @@ class Loader {
       if (!text) continue;
       Loader loader(registry_, diagnostics_);
       loader.open_stack_ = open_stack_;
-      auto json = parse_json(text, diagnostics_);
+      auto json = parse_graph(text);
       if (!json) continue;
       loader.open_root(*std::move(json), inner ? &inner->value : nullptr);
       if (const auto graph = connect(loader.draft, registry_, diagnostics_)) {
@@ -241,7 +286,7 @@ class Loader {
     if (!text) return;
     if (std::find(open_stack_.begin(), open_stack_.end(), text->name) != open_stack_.end())
       return diagnostics_.error(file.place, fmt::format("{}: the graph {} contains itself", subject, text->name));
-    auto json = parse_json(text, diagnostics_);
+    auto json = parse_graph(text);
     if (!json) return;
     entry.graph = std::make_unique<Scope>();
     Scope& inner = *entry.graph;
@@ -427,10 +472,10 @@ std::optional<DeclaredInput> declared_input(const LocatedJson& json, const Regis
 std::optional<Graph> load_graph_text(const std::string& name, const std::string& text, const Registry& registry,
                                      Diagnostics& diagnostics, const LoadOptions& options) {
   const auto source = std::make_shared<SourceText>(SourceText{name, text});
-  auto json = parse_json(source, diagnostics);
+  detail::Loader loader(registry, diagnostics);
+  auto json = loader.parse_graph(source);
   if (!json) return {};
   for (const auto& set : options.sets) detail::apply_set(*json, set, diagnostics);
-  detail::Loader loader(registry, diagnostics);
   loader.open_root(*std::move(json));
   auto graph = detail::connect(loader.draft, registry, diagnostics);
   if (graph) graph->name = name;

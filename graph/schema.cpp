@@ -160,6 +160,7 @@ Json json_schema(const Registry& registry) {
                  {"description", "Nodes and how they are wired; docs/graphs.md explains"}};
   schema.update(
       object({{"$schema", text("this schema")},
+              {"extends", text("a graph file that this one is laid over: members are merged, null takes one away")},
               {"description", text("what the graph does")},
               {"parameters", object_of(object({{"default", Json(true)}, {"doc", text("what it is")}}))},
               {"inputs", object_of({{"anyOf",
@@ -170,7 +171,8 @@ Json json_schema(const Registry& registry) {
               {"nodes", object_of(refer("node"))},
               {"outputs", object_of(refer("source"))},
               {"seed", {{"anyOf", {{{"type", "integer"}, {"minimum", 0}}, refer("parameter")}}, {"default", 1}}}},
-             {"nodes"}));
+             {}));
+  schema["anyOf"] = {{{"required", {"nodes"}}}, {{"required", {"extends"}}}};
   schema["definitions"] = std::move(definitions);
   return schema;
 }

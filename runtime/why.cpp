@@ -6,6 +6,7 @@
 #include <fstream>
 #include <set>
 
+#include "graph/differences.h"
 #include "graph/output_file.h"
 #include "runtime/plan.h"
 
@@ -22,21 +23,6 @@ fs::path snapshot_file(const Cache& cache, const Graph& graph) {
 std::string port_name(const Graph& graph, Graph::Port port) {
   const auto& node = graph.nodes[static_cast<std::size_t>(port.node)];
   return node.name + "." + node.type->outputs[static_cast<std::size_t>(port.port)].name;
-}
-
-/// `params/filters: 20 -> 30` for each place where two JSON values differ.
-void differences(const Json& before, const Json& now, const std::string& at, std::vector<std::string>& out) {
-  if (before == now) return;
-  if (!before.is_object() || !now.is_object()) {
-    const auto text = [](const Json& j) { return j.is_null() ? "nothing" : j.dump(); };
-    out.push_back(fmt::format("{}: {} -> {}", at, text(before), text(now)));
-    return;
-  }
-  std::set<std::string> names;
-  for (const auto* json : {&before, &now})
-    for (const auto& [name, value] : json->items()) names.insert(name);
-  for (const auto& name : names)
-    differences(before.value(name, Json()), now.value(name, Json()), at.empty() ? name : at + "/" + name, out);
 }
 
 /// Compares a graph with what it was.
@@ -61,8 +47,7 @@ class Comparison {
   std::vector<std::string> at_node(int node) const {
     const Json& nodes = before_["nodes"];
     if (!nodes.contains(name(node))) return {"the node is new"};
-    std::vector<std::string> found;
-    differences(nodes[name(node)], now_["nodes"][name(node)], "", found);
+    std::vector<std::string> found = differences(nodes[name(node)], now_["nodes"][name(node)]);
     const Json items_before = before_["items"].value(name(node), Json::object());
     const Json items_now = now_["items"].value(name(node), Json::object());
     for (const auto& [item, key] : items_now.items()) {

@@ -57,6 +57,14 @@ Cache open_cache(const RunCommand& run) {
   return Cache(run.cache.empty() ? Cache::default_folder() : run.cache, run.cache_limit);
 }
 
+int diff(const std::string& file, const std::string& other, const Registry& registry,
+         const std::vector<std::string>& sets) {
+  const auto a = load(file, registry, {}), b = load(other, registry, sets);
+  if (!a || !b) return usage;
+  fmt::print("{}", diff_graphs(*a, *b));
+  return success;
+}
+
 int why(const std::string& file, const Registry& registry, const std::vector<std::string>& sets, const RunCommand& run,
         const std::string& node) {
   const auto graph = load(file, registry, sets);
@@ -161,6 +169,12 @@ int main(int argc, char** argv) {
   auto* node_app = app.add_subcommand("node", "show one node type: ports, parameters, an example");
   node_app->add_option("type", type, "such as speech.mel")->required();
 
+  std::string other;
+  auto* diff_app = app.add_subcommand("diff", "what two graphs do differently");
+  diff_app->add_option("graph", graph, "graph file")->required();
+  diff_app->add_option("other", other, "another one (default: the same, with --set)");
+  diff_app->add_option("--set", sets, "path=value, in the second graph")->take_all()->allow_extra_args(false);
+
   auto* schema_app = app.add_subcommand("schema", "write the JSON Schema of graphs, for editors");
   schema_app->add_option("-o,--output", output, "file (default: standard output)");
 
@@ -188,6 +202,7 @@ int main(int argc, char** argv) {
       if (*speak_app) return speak(speech, registry);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
+      if (*diff_app) return diff(graph, other.empty() ? graph : other, registry, sets);
       if (*schema_app) return deliver(json_schema(registry).dump(1) + "\n", output), success;
       if (*node_app) return fmt::print("{}", show_node(registry, type)), success;
       return draw(graph, registry, sets, format, output);

@@ -47,6 +47,18 @@ TEST(Pipelines, CanBeDrawn) {
   EXPECT_NE(draw_mermaid(*graph).find("==>|Track|"), std::string::npos);
 }
 
+TEST(Pipelines, CanBeCompared) {
+  const Registry registry = all_nodes();
+  Diagnostics diagnostics;
+  const std::string file = TALKGRAPH_SOURCE_DIR "/pipelines/demo.json";
+  const auto a = load_graph(file, registry, diagnostics), b = load_graph(file, registry, diagnostics, {{"held_out=5"}}),
+             c = load_graph(file, registry, diagnostics, {{"outputs.clips=null", "seed=3"}});
+  ASSERT_TRUE(a && b && c) << diagnostics.str();
+  EXPECT_EQ(diff_graphs(*a, *a), "");
+  EXPECT_EQ(diff_graphs(*a, *b), "  recordings/params/held_out: 10 -> 5\n");
+  EXPECT_EQ(diff_graphs(*a, *c), "  outputs/clips: \"face/encode.file\" -> nothing\n  seed: 1 -> 3\n");
+}
+
 TEST(Nodes, AllSayWhatTheyAreFor) {
   const Registry registry = all_nodes();
   for (const auto& name : registry.names()) {

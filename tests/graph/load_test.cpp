@@ -148,6 +148,38 @@ TEST_F(Load, CollectsNothingWhereToldSo) {
   EXPECT_EQ(graph->resolved["nodes"]["s"]["in"], Json::parse(R"({ "all": {} })")) << "it must load again";
 }
 
+TEST_F(Load, ExtendsAnotherGraph) {
+  write("base.json", R"({ "parameters": { "k": { "default": 1, "doc": "d" } }, "nodes": {
+    "a": { "type": "toy.constant", "params": { "x": "${k}" } }, "b": { "type": "toy.constant" } }, "outputs": { "a": "a", "b": "b" } })");
+  const auto graph = load(R"({ "extends": "base.json", "parameters": { "k": { "default": 7 } },
+    "nodes": { "b": null }, "outputs": { "b": null, "again": "a" } })");
+  ASSERT_TRUE(graph) << diagnostics.str();
+  ASSERT_EQ(graph->nodes.size(), 1u);
+  EXPECT_EQ(graph->resolved["nodes"]["a"]["params"]["x"], 7);
+  EXPECT_EQ(graph->outputs.size(), 2u);
+}
+
+TEST_F(Load, ExtendsInTurnsAndInFragments) {
+  write("one.json",
+        R"({ "nodes": { "a": { "type": "toy.constant", "params": { "x": 1 } } }, "outputs": { "n": "a" } })");
+  write("two.json", R"({ "extends": "one.json", "nodes": { "a": { "params": { "x": 2 } } } })");
+  write("three.json", R"({ "extends": "two.json", "description": "three" })");
+  const auto graph = load(R"({ "nodes": { "f": { "graph": "three.json" } }, "outputs": { "n": "f" } })");
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_EQ(graph->resolved["nodes"]["f/a"]["params"]["x"], 2);
+}
+
+TEST_F(Load, SaysWhatIsWrongWithAnExtension) {
+  write("base.json", R"({ "nodes": { "alpha": { "type": "toy.constant" } }, "outputs": { "n": "alpha" } })");
+  expect_error(R"({ "extends": "base.json", "nodes": { "alhpa": null } })", "g.json:1:38",
+               "null takes \"nodes.alhpa\" away, but the extended graph has none (did you mean \"alpha\"?)");
+  expect_error(R"({ "extends": "bas.json" })", "g.json:1:14", "did you mean \"base.json\"?");
+  expect_error(R"({ "extends": "g.json" })", "g.json:1:14", "");
+  write("x.json", R"({ "extends": "y.json" })");
+  write("y.json", R"({ "extends": "x.json" })");
+  expect_error(R"({ "extends": "x.json" })", "y.json:1:14", "extends itself");
+}
+
 TEST_F(Load, DropsNodesNobodyNeeds) {
   const auto graph = load(R"({ "nodes": { "a": { "type": "toy.constant" }, "b": { "type": "toy.constant" } },
                                "outputs": { "a": "a" } })");
