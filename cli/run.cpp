@@ -2,30 +2,49 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
+#include "cli/cache.h"
 #include "cli/signals.h"
 #include "nodes/types/report.h"
 #include "runtime/progress.h"
 #include "runtime/run_folder.h"
+#include "runtime/trace.h"
 
 namespace talkgraph::cli {
 namespace {
 
-/// What the cache spared.
-void tell_savings(const RunResult& result) {
-  std::uint64_t found = 0;
-  double saved = 0;
-  for (const auto& node : result.nodes) found += node.loaded, saved += node.saved;
-  if (found)
-    fmt::print(stderr, "{} results found in the cache, which took {} to compute\n", found, duration_text(saved));
+/// Where the time went, and what the cache spared: the nodes that took longest.
+void tell_summary(const Graph& graph, const RunResult& result) {
+  constexpr std::size_t most = 8;
+  std::vector<std::size_t> order;
+  NodeStats all;
+  for (std::size_t n = 0; n < result.nodes.size(); ++n) {
+    const auto& stats = result.nodes[n];
+    all.calls += stats.calls, all.loaded += stats.loaded, all.cpu += stats.cpu, all.saved += stats.saved;
+    if (stats.cpu + stats.saved >= 0.1) order.push_back(n);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return result.nodes[a].cpu + result.nodes[a].saved > result.nodes[b].cpu + result.nodes[b].saved;
+  });
+  order.resize(std::min(order.size(), most));
+  const auto line = [](const std::string& name, const NodeStats& s) {
+    fmt::print(stderr, "{:<28} {:>7} {:>9.1f} s {:>9} {:>9.1f} s\n", name, s.calls, s.cpu, s.loaded, s.saved);
+  };
+  fmt::print(stderr, "{:<28} {:>7} {:>11} {:>9} {:>11}\n", "node", "calls", "processor", "found", "spared");
+  for (const auto n : order) line(graph.nodes[n].name, result.nodes[n]);
+  line("all", all);
+  fmt::print(stderr, "took {}, at most {} of memory\n", duration_text(result.wall), size_text(peak_memory()));
 }
 
 Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunObserver*> observers,
                 const std::filesystem::path& folder) {
   Progress progress(command.quiet);
   observers.push_back(&progress);
+  std::optional<Trace> trace;
+  if (!command.trace.empty()) observers.push_back(&trace.emplace(command.trace));
   const InterruptGuard guard;
   RunOptions options;
   options.threads = command.threads;
@@ -40,7 +59,7 @@ Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunOb
         &cache.emplace(command.cache.empty() ? Cache::default_folder() : command.cache, command.cache_limit);
   try {
     Outcome outcome{success, run(graph, options)};
-    if (!command.quiet) tell_savings(*outcome.result);
+    if (!command.quiet) tell_summary(graph, *outcome.result);
     if (const auto failures = outcome.result->failures.size()) {
       fmt::print(stderr, "{} failed, as said above\n", failures);
       outcome.code = failed;

@@ -21,6 +21,7 @@ struct RunCommand {
   bool overwrite = false;  ///< a folder that holds a run may be written to
   bool quiet = false;
   bool cached = false;          ///< results are kept and found
+  std::filesystem::path trace;  ///< file for the trace viewers; empty: none
   std::filesystem::path cache;  ///< empty: Cache::default_folder()
   std::uint64_t cache_limit = Cache::default_limit;
 };

@@ -1,15 +1,24 @@
 #include "graph/output_file.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <regex>
 #include <stdexcept>
+#include <vector>
 
 namespace talkgraph {
 namespace fs = std::filesystem;
+
+namespace {
+
+bool is_running(long process) { return kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH; }
+
+}  // namespace
 
 OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
   part_ =
@@ -31,6 +40,18 @@ void OutputFile::finish() {
   std::error_code error;
   fs::rename(part_, file_, error);
   if (error) throw std::runtime_error(fmt::format("{}: cannot be written: {}", file_.string(), error.message()));
+}
+
+void sweep_parts(const fs::path& folder) {
+  static const std::regex part(R"(.*\.part-(\d+)(\.[^.]*)?)");
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    std::smatch match;
+    const std::string name = entry.path().filename().string();
+    if (entry.is_regular_file() && std::regex_match(name, match, part) && !is_running(std::stol(match[1])))
+      left.push_back(entry.path());
+  }
+  for (const auto& file : left) fs::remove(file);
 }
 
 void put_files(const fs::path& from, const fs::path& to) {

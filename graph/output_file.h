@@ -26,6 +26,9 @@ class OutputFile {
   std::filesystem::path file_, part_;
 };
 
+/// Removes what killed processes left unfinished in a folder and below it.
+void sweep_parts(const std::filesystem::path& folder);
+
 /// Copies all files below a folder to another, each whole or not at all.
 void put_files(const std::filesystem::path& from, const std::filesystem::path& to);
 

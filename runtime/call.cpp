@@ -188,6 +188,7 @@ std::vector<Value> Caller::load(int n, const std::string& item) {
   const Watch watch(*this, n, item);
   auto result = keeper_->load(n, item);
   books(n).loaded += 1;
+  for (auto* o : options_.observers) o->loaded(n, item);
   books(n).saved += static_cast<std::int64_t>(1e9 * result.seconds);
   for (const auto& warning : result.warnings)
     for (auto* o : options_.observers) o->warn(n, item, warning);

@@ -60,6 +60,8 @@ class RunObserver {
   /// Around each call; a source is called to open its stream and for each item, whose key is not known then.
   virtual void call_started(int /*node*/, const std::string& /*item*/) {}
   virtual void call_ended(int /*node*/, const std::string& /*item*/) {}
+  /// The call at hand found its result in the cache; told before it ends.
+  virtual void loaded(int /*node*/, const std::string& /*item*/) {}
   /// The node is done with an item: called, skipped or failed. For a source: an item made.
   virtual void item_done(int /*node*/, const std::string& /*item*/) {}
   /// What a node tells through its Context.

@@ -40,6 +40,7 @@ RunFolder::RunFolder(const Graph& graph, fs::path path)
     : graph_(graph), path_(path.empty() ? unused_folder(graph, started_) : std::move(path)) {
   try {
     fs::create_directories(path_);
+    sweep_parts(path_);
     write_file(path_ / "graph.resolved.json", graph.resolved.dump(2) + "\n");
     write_file(path_ / "run.json", header("running").dump(2) + "\n");
     log_.open(path_ / "log.txt", std::ios::app);

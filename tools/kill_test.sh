@@ -2,7 +2,7 @@
 # Kills runs at random moments, resumes them, and holds what they leave to an undisturbed run:
 #   tools/kill_test.sh KILLS GRAPH [--set ...]
 set -euo pipefail
-talkgraph=$(cd "$(dirname "$0")/.." && pwd)/build/talkgraph
+talkgraph=${TALKGRAPH:-$(cd "$(dirname "$0")/.." && pwd)/build/talkgraph}
 kills=$1 graph=$2
 shift 2
 work=$(mktemp -d)

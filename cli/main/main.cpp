@@ -121,6 +121,7 @@ int main(int argc, char** argv) {
   run_app->add_option("--cache-size", run.cache_limit, "most that the cache may hold, as 500MB or 20GB")
       ->transform(CLI::AsSizeValue(true))
       ->capture_default_str();
+  run_app->add_option("--trace", run.trace, "file that the Perfetto and Chrome trace viewers open");
   run_app->add_flag("--overwrite", run.overwrite, "write to a folder that holds a run already");
   run_app->add_flag("-q,--quiet", run.quiet, "no progress, only warnings and failures");
 

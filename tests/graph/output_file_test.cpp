@@ -46,5 +46,18 @@ TEST(WriteFile, ReplacesAFileOrLeavesItAsItIs) {
   EXPECT_THAT(complaint(folder.path() / "folder"), HasSubstr("folder: cannot be written"));
 }
 
+TEST(OutputFile, WhatAKilledProcessLeftIsSwept) {
+  const test::TemporaryFolder folder;
+  folder.write("clips/a.part-99999999.mp4", "half");
+  folder.write("b.part-99999999", "half");
+  folder.write("c.part-" + std::to_string(getpid()) + ".txt", "at work");
+  folder.write("part-1.txt", "a name");
+  sweep_parts(folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder.file("clips/a.part-99999999.mp4")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("b.part-99999999")));
+  EXPECT_EQ(folder.read("c.part-" + std::to_string(getpid()) + ".txt"), "at work");
+  EXPECT_EQ(folder.read("part-1.txt"), "a name");
+}
+
 }  // namespace
 }  // namespace talkgraph
