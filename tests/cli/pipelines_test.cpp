@@ -4,6 +4,7 @@
 
 #include "cli/look.h"
 #include "cli/registry.h"
+#include "graph/differences.h"
 
 namespace talkgraph::cli {
 namespace {
@@ -56,6 +57,9 @@ TEST(Pipelines, CanBeCompared) {
   ASSERT_TRUE(a && b && c) << diagnostics.str();
   EXPECT_EQ(diff_graphs(*a, *a), "");
   EXPECT_EQ(diff_graphs(*a, *b), "  recordings/params/held_out: 10 -> 5\n");
+  EXPECT_EQ(differences(Json::parse(R"({ "g": "{ \"k\": 1 }", "x": [1] })"),
+                        Json::parse(R"({ "x": [2], "g": "{ \"k\": 2 }" })")),
+            (std::vector<std::string>{"g/k: 1 -> 2", "x: [1] -> [2]"}));
   EXPECT_EQ(diff_graphs(*a, *c), "  outputs/clips: \"face/encode.file\" -> nothing\n  seed: 1 -> 3\n");
 }
 
