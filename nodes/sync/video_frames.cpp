@@ -5,6 +5,14 @@
 #include <stdexcept>
 
 namespace talkgraph {
+namespace {
+
+// A frame begun is a frame: a clip lasts as long as its sound.
+Eigen::Index frames_in(double seconds, const Rational& fps) {
+  return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(seconds * fps.value() - 1e-6)));
+}
+
+}  // namespace
 
 Eigen::Index video_frames(const Track& track, const Audio* audio, const Rational& fps) {
   const double reach = 2 * track.start + static_cast<double>(track.frames() - 1) / track.rate.value();
@@ -13,9 +21,10 @@ Eigen::Index video_frames(const Track& track, const Audio* audio, const Rational
   if (std::abs(seconds - reach) > tolerance)
     throw std::runtime_error("sound of " + std::to_string(seconds) + " s beside a track of " + std::to_string(reach) +
                              " s: both must be of one utterance");
-  // A frame begun is a frame: a clip lasts as long as its sound.
-  return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(seconds * fps.value() - 1e-6)));
+  return frames_in(seconds, fps);
 }
+
+Eigen::Index video_frames(const Audio& audio, const Rational& fps) { return frames_in(audio.seconds(), fps); }
 
 double video_time(Eigen::Index n, const Rational& fps) { return (static_cast<double>(n) + 0.5) / fps.value(); }
 

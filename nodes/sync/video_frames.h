@@ -11,6 +11,9 @@ namespace talkgraph {
 /// Throws std::runtime_error if sound and track are clearly not of one utterance.
 Eigen::Index video_frames(const Track& track, const Audio* audio, const Rational& fps);
 
+/// In the sound alone.
+Eigen::Index video_frames(const Audio& audio, const Rational& fps);
+
 /// Centre of video frame n, seconds: (n + ½) / fps.
 double video_time(Eigen::Index n, const Rational& fps);
 

@@ -9,7 +9,7 @@ namespace {
 TEST(Register, DescribesEveryNode) {
   Registry registry;
   register_sync(registry);
-  EXPECT_THAT(registry.names(), testing::ElementsAre("sync.median", "sync.polyphase"));
+  EXPECT_THAT(registry.names(), testing::ElementsAre("sync.frames", "sync.median", "sync.polyphase"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "nodes/sync/frames.h"
 #include "nodes/sync/median.h"
 #include "nodes/sync/polyphase.h"
 
@@ -33,10 +34,15 @@ TEST(Sync, GivesTheFramesOfTheVideo) {
     const auto expected = static_cast<Eigen::Index>(std::ceil(2.98 * rate.value() - 1e-6));
     EXPECT_EQ((Polyphase{.rate = rate}(tone(1), &audio).frames()), expected);
     EXPECT_EQ(MedianSync{rate}(tone(1), &audio).frames(), expected);
+    const Track frames = VideoFrames{rate}(audio);
+    EXPECT_EQ(frames.frames(), expected);
+    EXPECT_EQ(frames.dimension(), 0);
+    EXPECT_DOUBLE_EQ(frames.time(7), MedianSync{rate}(tone(1), &audio).time(7));
     EXPECT_DOUBLE_EQ(MedianSync{rate}(tone(1), &audio).start, 0.5 / rate.value());
   }
   const Audio click = seconds(0.001);
   EXPECT_EQ(Polyphase{}(tone(1, 1), &click).frames(), 1);
+  EXPECT_EQ(VideoFrames{}(click).frames(), 1);
 }
 
 TEST(Polyphase, KeepsAConstantAndASlowToneWithoutDelay) {
