@@ -43,15 +43,15 @@ void OutputFile::finish() {
 }
 
 void sweep_parts(const fs::path& folder) {
-  static const std::regex part(R"(.*\.part-(\d+)(\.[^.]*)?)");
+  static const std::regex part(R"(.*\.part-(\d+)(\.[^.]*)?)"), desk(R"(\.desk-(\d+)-.*)");
   std::vector<fs::path> left;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     std::smatch match;
     const std::string name = entry.path().filename().string();
-    if (entry.is_regular_file() && std::regex_match(name, match, part) && !is_running(std::stol(match[1])))
+    if (std::regex_match(name, match, entry.is_directory() ? desk : part) && !is_running(std::stol(match[1])))
       left.push_back(entry.path());
   }
-  for (const auto& file : left) fs::remove(file);
+  for (const auto& path : left) fs::remove_all(path);
 }
 
 void put_files(const fs::path& from, const fs::path& to) {

@@ -26,7 +26,8 @@ class OutputFile {
   std::filesystem::path file_, part_;
 };
 
-/// Removes what killed processes left unfinished in a folder and below it.
+/// Removes what killed processes left unfinished in a folder and below it: parts of files, and folders called
+/// ".desk-<process>-...".
 void sweep_parts(const std::filesystem::path& folder);
 
 /// Copies all files below a folder to another, each whole or not at all.

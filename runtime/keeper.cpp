@@ -1,6 +1,11 @@
 #include "runtime/keeper.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 
 #include "graph/output_file.h"
 #include "runtime/why.h"
@@ -44,6 +49,14 @@ void Keeper::keep(int n, const std::string& item, const Cache::Result& result, c
   } catch (const std::exception& e) {
     give_up(e.what());
   }
+}
+
+fs::path Keeper::desk() const {
+  std::string name = (folder_ / fmt::format(".desk-{}-XXXXXX", getpid())).string();
+  fs::create_directories(folder_);
+  if (!mkdtemp(name.data()))
+    throw std::runtime_error(fmt::format("{} cannot be written: {}", folder_.string(), std::strerror(errno)));
+  return name;
 }
 
 void Keeper::deliver(const fs::path& desk) const { put_files(desk, folder_); }

@@ -27,8 +27,8 @@ class Keeper {
   /// Keeps a result; `written` holds what a sink wrote, or is empty. What cannot be kept is not an error of the run.
   void keep(int node, const std::string& item, const Cache::Result& result, const std::filesystem::path& written);
 
-  /// An empty folder for a sink to write to.
-  std::filesystem::path desk() const { return cache_.work_folder(); }
+  /// An empty folder for a sink to write to, on the disk of the run folder: a full cache must not stop it.
+  std::filesystem::path desk() const;
   /// Puts what a sink wrote into the run folder.
   void deliver(const std::filesystem::path& desk) const;
 

@@ -52,11 +52,13 @@ TEST(OutputFile, WhatAKilledProcessLeftIsSwept) {
   folder.write("b.part-99999999", "half");
   folder.write("c.part-" + std::to_string(getpid()) + ".txt", "at work");
   folder.write("part-1.txt", "a name");
+  folder.write(".desk-99999999-abc/a.txt", "half");
   sweep_parts(folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder.file("clips/a.part-99999999.mp4")));
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.part-99999999")));
   EXPECT_EQ(folder.read("c.part-" + std::to_string(getpid()) + ".txt"), "at work");
   EXPECT_EQ(folder.read("part-1.txt"), "a name");
+  EXPECT_FALSE(std::filesystem::exists(folder.file(".desk-99999999-abc")));
 }
 
 }  // namespace
