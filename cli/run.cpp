@@ -53,10 +53,8 @@ Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunOb
   options.keep_going = command.keep_going;
   options.cancel = guard.flag();
   options.observers = std::move(observers);
-  std::optional<Cache> cache;
-  if (command.cached)
-    options.cache =
-        &cache.emplace(command.cache.empty() ? Cache::default_folder() : command.cache, command.cache_limit);
+  const auto cache = open_cache(command);
+  options.cache = cache.get();
   try {
     Outcome outcome{success, run(graph, options)};
     if (!command.quiet) tell_summary(graph, *outcome.result);
@@ -88,6 +86,11 @@ void name_artifacts(const RunResult& result, const std::filesystem::path& folder
 }
 
 }  // namespace
+
+std::unique_ptr<Cache> open_cache(const RunCommand& command) {
+  if (!command.cached) return nullptr;
+  return std::make_unique<Cache>(command.cache.empty() ? Cache::default_folder() : command.cache, command.cache_limit);
+}
 
 Outcome run_graph(const Graph& graph, const RunCommand& command) { return execute(graph, command, {}, command.folder); }
 

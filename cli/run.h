@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct RunCommand {
   std::filesystem::path cache;  ///< empty: Cache::default_folder()
   std::uint64_t cache_limit = Cache::default_limit;
 };
+
+/// Where the command's results are kept; null if it shall keep none.
+std::unique_ptr<Cache> open_cache(const RunCommand& command);
 
 /// `talkgraph run`: loads, checks and runs a graph in a run folder. The folder
 /// and what the graph's sinks wrote are named on stdout, all else on stderr.

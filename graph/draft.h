@@ -55,6 +55,11 @@ struct DeclaredInput {
 std::optional<DeclaredInput> declared_input(const LocatedJson& json, const Registry& registry,
                                             Diagnostics& diagnostics);
 
+/// Complain of members that are not allowed, or of what is no object.
+void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,
+                Diagnostics& diagnostics);
+bool expect_object(const LocatedJson& json, const std::string& subject, Diagnostics& diagnostics);
+
 /// The members of an object part of a graph ("nodes"), or nothing if absent.
 const std::vector<LocatedJson::Member>& members_of(const LocatedJson& json, std::string_view key);
 

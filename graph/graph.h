@@ -58,9 +58,16 @@ struct Graph {
   std::vector<std::shared_ptr<const NodeType>> input_types;  ///< of a fragment's own inputs, which cannot run
 };
 
+/// A value put into a graph's text before anything is read from it; null takes a node, a wire or an output away.
+struct Change {
+  std::string path;   ///< "nodes.mel.params.filters", or a parameter of the graph by its name alone
+  LocatedJson value;  ///< its place is where a file name in it counts from, and what complaints name
+};
+
 /// How a graph is loaded.
 struct LoadOptions {
-  std::vector<std::string> sets;  ///< "path=value", as given to --set
+  std::vector<std::string> sets = {};  ///< "path=value", as given to --set
+  std::vector<Change> changes = {};    ///< after these
 };
 
 /// Reads, resolves and checks a graph file. All that is wrong goes to

@@ -16,20 +16,6 @@ const std::vector<std::string> graph_keys = {"$schema", "description", "paramete
                                              "nodes",   "outputs",     "seed"};
 const std::vector<std::string> node_keys = {"type", "graph", "in", "params", "description"};
 
-void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,
-                Diagnostics& diagnostics) {
-  for (const auto& m : json.members)
-    if (std::find(allowed.begin(), allowed.end(), m.key) == allowed.end())
-      diagnostics.error(m.key_place,
-                        fmt::format("{}: unknown key \"{}\"{}", subject, m.key, did_you_mean(m.key, allowed)));
-}
-
-bool expect_object(const LocatedJson& json, const std::string& subject, Diagnostics& diagnostics) {
-  if (json.is(Kind::object)) return true;
-  diagnostics.error(json.place, fmt::format("{} must be an object, got {}", subject, json.kind_name()));
-  return false;
-}
-
 std::vector<std::string> names_of(const std::map<std::string, LocatedJson>& parameters) {
   std::vector<std::string> names;
   for (const auto& [name, value] : parameters) names.push_back(name);
@@ -380,17 +366,23 @@ bool can_be_taken_away(const std::vector<std::string>& path) {
   return named || (path.size() == 4 && path[0] == "nodes" && path[2] == "in");
 }
 
-/// Applies "path=value" to a graph's text before anything is read from it.
-void apply_set(LocatedJson& json, const std::string& set, Diagnostics& diagnostics) {
+/// "path=value", as given to --set.
+std::optional<Change> parse_set(const std::string& set, Diagnostics& diagnostics) {
   const auto equals = set.find('=');
-  auto source = std::make_shared<SourceText>(SourceText{"--set", set});
-  Place place{source, 1, 1, static_cast<int>(set.size())};
+  const auto source = std::make_shared<SourceText>(SourceText{"--set", set});
+  const Place place{source, 1, 1, static_cast<int>(set.size())};
   if (equals == std::string::npos || equals == 0)
-    return diagnostics.error(place, "--set takes path=value, such as nodes.mfcc.params.filters=20");
-  const std::string path = set.substr(0, equals), text = set.substr(equals + 1);
+    return diagnostics.error(place, "--set takes path=value, such as nodes.mfcc.params.filters=20"), std::nullopt;
+  const std::string text = set.substr(equals + 1);
   Json value = Json::parse(text, nullptr, false);
   if (value.is_discarded()) value = text;
+  return Change{set.substr(0, equals), located(value, place)};
+}
 
+/// Applied to a graph's text before anything is read from it.
+void apply(const Change& change, LocatedJson& json, Diagnostics& diagnostics) {
+  const std::string& path = change.path;
+  const Place& place = change.value.place;
   std::vector<std::string> parts;
   for (std::size_t at = 0; at <= path.size();) {
     const auto dot = std::min(path.find('.', at), path.size());
@@ -404,20 +396,20 @@ void apply_set(LocatedJson& json, const std::string& set, Diagnostics& diagnosti
     for (const auto& m : members_of(json, "parameters")) known.push_back(m.key);
     if (!parameters || !parameters->value.find(parts[0]))
       return diagnostics.error(
-          place, fmt::format("--set: the graph has no parameter \"{}\"{}", parts[0], did_you_mean(parts[0], known)));
+          place, fmt::format("the graph has no parameter \"{}\" to set{}", parts[0], did_you_mean(parts[0], known)));
     parts = {"parameters", parts[0], "default"};
   }
   LocatedJson *at = &json, *parent = nullptr;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!at->is(Kind::object))
-      return diagnostics.error(place, fmt::format("--set: nothing can be set below \"{}\"", parts[i - 1]));
+      return diagnostics.error(place, fmt::format("nothing can be set below \"{}\"", parts[i - 1]));
     auto* member = at->find(parts[i]);
     const bool may_add = i + 1 == parts.size() || parts[i] == "params" || parts[i] == "in";
     if (!member && !may_add) {
       std::vector<std::string> known;
       for (const auto& m : at->members) known.push_back(m.key);
       return diagnostics.error(place,
-                               fmt::format("--set: there is no \"{}\"{}", parts[i], did_you_mean(parts[i], known)));
+                               fmt::format("there is no \"{}\" to set{}", parts[i], did_you_mean(parts[i], known)));
     }
     if (!member) {
       LocatedJson empty;
@@ -429,13 +421,27 @@ void apply_set(LocatedJson& json, const std::string& set, Diagnostics& diagnosti
     parent = at;
     at = &member->value;
   }
-  if (value.is_null() && can_be_taken_away(parts))
+  if (change.value.is(Kind::null) && can_be_taken_away(parts))
     std::erase_if(parent->members, [&](const LocatedJson::Member& m) { return m.key == parts.back(); });
   else
-    *at = located(value, place);
+    *at = change.value;
 }
 
 }  // namespace
+
+void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,
+                Diagnostics& diagnostics) {
+  for (const auto& m : json.members)
+    if (std::find(allowed.begin(), allowed.end(), m.key) == allowed.end())
+      diagnostics.error(m.key_place,
+                        fmt::format("{}: unknown key \"{}\"{}", subject, m.key, did_you_mean(m.key, allowed)));
+}
+
+bool expect_object(const LocatedJson& json, const std::string& subject, Diagnostics& diagnostics) {
+  if (json.is(Kind::object)) return true;
+  diagnostics.error(json.place, fmt::format("{} must be an object, got {}", subject, json.kind_name()));
+  return false;
+}
 
 const std::vector<LocatedJson::Member>& members_of(const LocatedJson& json, std::string_view key) {
   static const std::vector<LocatedJson::Member> none;
@@ -475,7 +481,9 @@ std::optional<Graph> load_graph_text(const std::string& name, const std::string&
   detail::Loader loader(registry, diagnostics);
   auto json = loader.parse_graph(source);
   if (!json) return {};
-  for (const auto& set : options.sets) detail::apply_set(*json, set, diagnostics);
+  for (const auto& set : options.sets)
+    if (const auto change = detail::parse_set(set, diagnostics)) detail::apply(*change, *json, diagnostics);
+  for (const auto& change : options.changes) detail::apply(change, *json, diagnostics);
   loader.open_root(*std::move(json));
   auto graph = detail::connect(loader.draft, registry, diagnostics);
   if (graph) graph->name = name;

@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -16,13 +17,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// "part-<process>-<number>": of its own also among the threads of a process.
+std::string part_name() {
+  static std::atomic<unsigned> number{0};
+  return fmt::format("part-{}-{}", getpid(), ++number);
+}
+
 bool is_running(long process) { return kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH; }
 
 }  // namespace
 
 OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
-  part_ =
-      file_.parent_path() / fmt::format("{}.part-{}{}", file_.stem().string(), getpid(), file_.extension().string());
+  part_ = file_.parent_path() / fmt::format("{}.{}{}", file_.stem().string(), part_name(), file_.extension().string());
   if (file_.parent_path().empty()) return;
   std::error_code error;
   fs::create_directories(file_.parent_path(), error);
@@ -43,7 +49,7 @@ void OutputFile::finish() {
 }
 
 void sweep_parts(const fs::path& folder) {
-  static const std::regex part(R"(.*\.part-(\d+)(\.[^.]*)?)"), desk(R"(\.desk-(\d+)-.*)");
+  static const std::regex part(R"(.*\.part-(\d+)-\d+(\.[^.]*)?)"), desk(R"(\.desk-(\d+)-.*)");
   std::vector<fs::path> left;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     std::smatch match;

@@ -7,10 +7,12 @@
 #include <opencv2/core.hpp>
 
 #include "cli/cache.h"
+#include "cli/experiment.h"
 #include "cli/look.h"
 #include "cli/registry.h"
 #include "cli/run.h"
 #include "cli/speak.h"
+#include "experiment/experiment.h"
 #include "graph/output_file.h"
 #include "graph/schema.h"
 #include "nodes/model/save.h"
@@ -53,10 +55,6 @@ void deliver(const std::string& text, const std::string& file) {
     write_file(file, text);
 }
 
-Cache open_cache(const RunCommand& run) {
-  return Cache(run.cache.empty() ? Cache::default_folder() : run.cache, run.cache_limit);
-}
-
 int diff(const std::string& file, const std::string& other, const Registry& registry,
          const std::vector<std::string>& sets) {
   const auto a = load(file, registry, {}), b = load(other, registry, sets);
@@ -69,7 +67,8 @@ int why(const std::string& file, const Registry& registry, const std::vector<std
         const std::string& node) {
   const auto graph = load(file, registry, sets);
   if (!graph) return usage;
-  const Cache cache = open_cache(run);
+  const auto kept = open_cache(run);
+  const Cache& cache = *kept;
   const Forecast forecast(*graph, cache);
   fmt::print(
       "{}", explain(*graph, forecast, last_snapshot(cache, *graph), node.empty() ? std::nullopt : std::optional(node)));
@@ -107,23 +106,32 @@ int main(int argc, char** argv) {
   RunCommand run;
   SpeakCommand speech;
 
+  ExperimentCommand experiment;
+
   auto* run_app = app.add_subcommand("run", "run a graph");
   run_app->add_option("graph", graph, "graph file")->required();
-  run_app->add_option("--set", run.sets, "path=value, or parameter=value")->take_all()->allow_extra_args(false);
-  run_app->add_option("-o,--folder", run.folder, "run folder (default runs/<graph>-<time>)");
-  run_app->add_option("--threads", run.threads, "threads")->check(CLI::Range(1, 256));
-  run_app->add_flag("--serial", run.serial, "one thread, node by node");
-  run_app->add_flag("--keep-going", run.keep_going, "finish what can be finished, list what failed");
-  run_app->add_option("--cache", run.cache,
-                      "folder that keeps results (default: $TALKGRAPH_CACHE, or ~/.cache/talkgraph)");
+  auto* experiment_app =
+      app.add_subcommand("experiment", "run a graph with many settings and compare what comes of it");
+  experiment_app->add_option("experiment", graph, "experiment file")->required();
+  experiment_app->add_flag("--dry-run", experiment.dry_run, "list the runs, and how much of each is kept already");
+  experiment_app->add_option("--memory", experiment.memory, "most that runs beside each other may take, as 8GB")
+      ->transform(CLI::AsSizeValue(true));
   bool no_cache = false;
-  run_app->add_flag("--no-cache", no_cache, "compute everything, keep nothing");
-  run_app->add_option("--cache-size", run.cache_limit, "most that the cache may hold, as 500MB or 20GB")
-      ->transform(CLI::AsSizeValue(true))
-      ->capture_default_str();
+  for (auto* c : {run_app, experiment_app}) {
+    c->add_option("--set", run.sets, "path=value, or parameter=value")->take_all()->allow_extra_args(false);
+    c->add_option("-o,--folder", run.folder, "folder for results (default: below runs/)");
+    c->add_option("--threads", run.threads, "threads")->check(CLI::Range(1, 256));
+    c->add_flag("--keep-going", run.keep_going, "finish what can be finished, list what failed");
+    c->add_option("--cache", run.cache, "folder that keeps results (default: $TALKGRAPH_CACHE, or ~/.cache/talkgraph)");
+    c->add_flag("--no-cache", no_cache, "compute everything, keep nothing");
+    c->add_option("--cache-size", run.cache_limit, "most that the cache may hold, as 500MB or 20GB")
+        ->transform(CLI::AsSizeValue(true))
+        ->capture_default_str();
+    c->add_flag("-q,--quiet", run.quiet, "no progress, only warnings and failures");
+  }
+  run_app->add_flag("--serial", run.serial, "one thread, node by node");
   run_app->add_option("--trace", run.trace, "file that the Perfetto and Chrome trace viewers open");
   run_app->add_flag("--overwrite", run.overwrite, "write to a folder that holds a run already");
-  run_app->add_flag("-q,--quiet", run.quiet, "no progress, only warnings and failures");
 
   auto* cache_app = app.add_subcommand("cache", "look after the kept results");
   cache_app->require_subcommand(1);
@@ -176,7 +184,9 @@ int main(int argc, char** argv) {
   diff_app->add_option("other", other, "another one (default: the same, with --set)");
   diff_app->add_option("--set", sets, "path=value, in the second graph")->take_all()->allow_extra_args(false);
 
-  auto* schema_app = app.add_subcommand("schema", "write the JSON Schema of graphs, for editors");
+  auto* schema_app = app.add_subcommand("schema", "write the JSON Schema of graphs or experiments, for editors");
+  bool of_experiments = false;
+  schema_app->add_flag("--experiment", of_experiments, "of experiment files");
   schema_app->add_option("-o,--output", output, "file (default: standard output)");
 
   auto* draw_app = app.add_subcommand("draw", "draw a graph");
@@ -196,15 +206,17 @@ int main(int argc, char** argv) {
     const auto command = [&]() -> int {
       run.cached = !no_cache;
       if (*run_app) return run_file(graph, run, registry);
-      if (*info_app) return fmt::print("{}", cache_info(open_cache(run))), success;
-      if (*verify_app) return cache_verify(open_cache(run)) ? failed : success;
-      if (*prune_app) return fmt::print("{} freed\n", size_text(open_cache(run).prune(keep))), success;
+      if (*experiment_app) return experiment.run = run, run_experiment(graph, experiment, registry);
+      if (*info_app) return fmt::print("{}", cache_info(*open_cache(run))), success;
+      if (*verify_app) return cache_verify(*open_cache(run)) ? failed : success;
+      if (*prune_app) return fmt::print("{} freed\n", size_text(open_cache(run)->prune(keep))), success;
       if (*why_app) return why(graph, registry, sets, run, word);
       if (*speak_app) return speak(speech, registry);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
       if (*diff_app) return diff(graph, other.empty() ? graph : other, registry, sets);
-      if (*schema_app) return deliver(json_schema(registry).dump(1) + "\n", output), success;
+      if (*schema_app)
+        return deliver((of_experiments ? experiment_schema() : json_schema(registry)).dump(1) + "\n", output), success;
       if (*node_app) return fmt::print("{}", show_node(registry, type)), success;
       return draw(graph, registry, sets, format, output);
     };

@@ -34,14 +34,25 @@ std::string line(const std::string& path, const char* colour, double width = 1) 
   return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n", path, colour, width);
 }
 
-/// A reference to the x or the y of a series.
-using Values = std::vector<double> Series::*;
+/// Of the whisker at a point, or 0.
+double spread_at(const Series& s, std::size_t i) {
+  return i < s.spread.size() && std::isfinite(s.spread[i]) ? s.spread[i] : 0;
+}
 
-Axis axis_of(const Panel& panel, Values values, int ticks) {
+Axis x_axis(const Panel& panel, int ticks) {
   double low = INFINITY, high = -INFINITY;
   for (const auto& s : panel.series)
-    for (const double v : s.*values)
+    for (const double v : s.x)
       if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+  return axis_over(low, high, ticks);
+}
+
+Axis y_axis(const Panel& panel, int ticks) {
+  double low = INFINITY, high = -INFINITY;
+  for (const auto& s : panel.series)
+    for (std::size_t i = 0; i < s.y.size(); ++i)
+      if (const double d = spread_at(s, i); std::isfinite(s.y[i]))
+        low = std::min(low, s.y[i] - d), high = std::max(high, s.y[i] + d);
   return axis_over(low, high, ticks);
 }
 
@@ -53,6 +64,17 @@ std::string path_of(const Series& s, const Axis& x, const Axis& y, double w, dou
     if (there)
       path += fmt::format("{}{:.1f} {:.1f}", drawing ? "L" : "M", x.share(s.x[i]) * w, h - y.share(s.y[i]) * h);
     drawing = there;
+  }
+  return path;
+}
+
+std::string whiskers_of(const Series& s, const Axis& x, const Axis& y, double w, double h) {
+  std::string path;
+  for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i) {
+    const double d = spread_at(s, i);
+    if (!(d > 0) || !std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
+    const double at = x.share(s.x[i]) * w, low = h - y.share(s.y[i] - d) * h, high = h - y.share(s.y[i] + d) * h;
+    path += fmt::format("M{0:.1f} {2:.1f}V{1:.1f}M{3:.1f} {1:.1f}h6M{3:.1f} {2:.1f}h6", at, low, high, at - 3);
   }
   return path;
 }
@@ -75,11 +97,15 @@ std::string draw_axes(const Panel& panel, const Axis& x, const Axis& y, double w
 
 std::string draw_panel(const Panel& panel, const Layout& layout) {
   const double w = layout.width - kLeft - kRight, h = layout.height - kTop - kBottom;
-  const Axis x = axis_of(panel, &Series::x, std::max(2, static_cast<int>(w / 50)));
-  const Axis y = axis_of(panel, &Series::y, std::max(2, static_cast<int>(h / 35)));
+  const Axis x = x_axis(panel, std::max(2, static_cast<int>(w / 50)));
+  const Axis y = y_axis(panel, std::max(2, static_cast<int>(h / 35)));
   std::string out = draw_axes(panel, x, y, w, h);
-  for (std::size_t i = 0; i < panel.series.size(); ++i)
-    out += line(path_of(panel.series[i], x, y, w, h), kColours[i % kColours.size()], 1.6);
+  for (std::size_t i = 0; i < panel.series.size(); ++i) {
+    const char* colour = kColours[i % kColours.size()];
+    out += line(path_of(panel.series[i], x, y, w, h), colour, 1.6);
+    if (const auto whiskers = whiskers_of(panel.series[i], x, y, w, h); !whiskers.empty())
+      out += line(whiskers, colour);
+  }
   return out;
 }
 

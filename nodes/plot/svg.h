@@ -9,6 +9,7 @@ namespace talkgraph {
 struct Series {
   std::string name;
   std::vector<double> x, y;
+  std::vector<double> spread = {};  ///< whiskers of ± this at each point; empty or NaN: none
 };
 
 /// A pair of axes with its lines.

@@ -6,16 +6,12 @@
 #include <nlohmann/json.hpp>
 
 namespace talkgraph {
-namespace {
-
 std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
   return out + "\"";
 }
-
-}  // namespace
 
 std::string to_csv(const Table& table) {
   std::string out = csv_text(table.corner);

@@ -7,6 +7,8 @@
 
 namespace talkgraph {
 
+/// A cell, in quotes where it needs them.
+std::string csv_text(const std::string& text);
 /// A heading and a line a row; no value is an empty cell.
 std::string to_csv(const Table& table);
 /// A heading (the track's names, or d0, d1, ...) and a line a frame, every digit kept.

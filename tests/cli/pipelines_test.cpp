@@ -4,6 +4,7 @@
 
 #include "cli/look.h"
 #include "cli/registry.h"
+#include "experiment/experiment.h"
 #include "graph/differences.h"
 
 namespace talkgraph::cli {
@@ -12,7 +13,8 @@ namespace {
 std::vector<std::string> pipelines() {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(TALKGRAPH_SOURCE_DIR "/pipelines"))
-    if (entry.path().extension() == ".json" && entry.path().filename() != "talkgraph.schema.json")
+    if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with("talkgraph.") &&
+        entry.path().parent_path().filename() != "experiments")
       files.push_back(entry.path().string());
   return files;
 }
@@ -24,6 +26,18 @@ TEST(Pipelines, AreSound) {
     Diagnostics diagnostics;
     EXPECT_TRUE(load_graph(file, registry, diagnostics)) << diagnostics.str();
   }
+}
+
+TEST(Experiments, AreSound) {
+  const Registry registry = all_nodes();
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(TALKGRAPH_SOURCE_DIR "/pipelines/experiments")) {
+    Diagnostics diagnostics;
+    const auto experiment = load_experiment(entry.path(), diagnostics);
+    EXPECT_TRUE(experiment && load_trials(*experiment, registry, {}, diagnostics)) << diagnostics.str();
+    ++count;
+  }
+  EXPECT_GT(count, 0u);
 }
 
 TEST(Pipelines, LoadAgainFromWhatARunFolderKeeps) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "cli/registry.h"
+#include "experiment/experiment.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
@@ -20,9 +21,10 @@ const std::string pipelines = TALKGRAPH_SOURCE_DIR "/pipelines/";
 class Schema : public testing::Test {
  protected:
   Schema() : schema_(folder_.write("schema.json", json_schema(all_nodes()).dump())) {}
-  std::string complaints(const std::string& files) {
+  std::string complaints(const std::string& files) { return complaints(files, schema_); }
+  std::string complaints(const std::string& files, const std::string& schema) {
     const std::string out = folder_.file("out.txt");
-    const std::string command = "python3 -W ignore -m jsonschema " + files + " '" + schema_ + "' > '" + out + "' 2>&1";
+    const std::string command = "python3 -W ignore -m jsonschema " + files + " '" + schema + "' > '" + out + "' 2>&1";
     const int code = std::system(command.c_str());
     const auto said = folder_.read("out.txt");
     return code == 0 ? "" : said.empty() ? "python3 -m jsonschema cannot be run" : said;
@@ -35,12 +37,29 @@ class Schema : public testing::Test {
   const std::string schema_;
 };
 
-TEST_F(Schema, HoldsForEveryPipeline) {
-  std::string files;
-  for (const auto& entry : fs::recursive_directory_iterator(pipelines))
-    if (entry.path().extension() == ".json" && entry.path().filename() != "talkgraph.schema.json")
-      files += " -i '" + entry.path().string() + "'";
-  EXPECT_EQ(complaints(files), "");
+/// Files below pipelines/ that name a schema.
+std::vector<fs::path> files_naming(const std::string& schema) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(pipelines)) {
+    if (entry.path().extension() != ".json") continue;
+    std::ifstream file(entry.path());
+    const std::string named = Json::parse(file).value("$schema", "");
+    if (fs::path(named).filename() == schema && fs::exists(entry.path().parent_path() / named))
+      files.push_back(entry.path());
+  }
+  return files;
+}
+
+std::string instances(const std::vector<fs::path>& files) {
+  std::string out;
+  for (const auto& file : files) out += " -i '" + file.string() + "'";
+  return out;
+}
+
+TEST_F(Schema, HoldsForEveryPipelineAndExperiment) {
+  EXPECT_EQ(complaints(instances(files_naming("talkgraph.schema.json"))), "");
+  const std::string schema = folder_.write("experiment.schema.json", experiment_schema().dump());
+  EXPECT_EQ(complaints(instances(files_naming("talkgraph.experiment.schema.json")), schema), "");
 }
 
 TEST_F(Schema, FindsWhatIsWrong) {
@@ -66,21 +85,38 @@ TEST_F(Schema, FindsWhatIsWrong) {
   EXPECT_THAT(complaints_of(R"({ "nodes": {}, "output": {} })"), HasSubstr("output"));
 }
 
-TEST_F(Schema, BesideThePipelinesIsUpToDate) {
-  std::ifstream file(pipelines + "talkgraph.schema.json");
-  const Json there = Json::parse(file, nullptr, false);
-  EXPECT_TRUE(there == json_schema(all_nodes()))
-      << "stale: run build/talkgraph schema -o pipelines/talkgraph.schema.json";
+TEST_F(Schema, OfExperimentsFindsWhatIsWrong) {
+  using testing::HasSubstr;
+  const std::string schema = folder_.write("experiment.schema.json", experiment_schema().dump());
+  const auto complaints_of_experiment = [&](const std::string& members) {
+    const auto file = folder_.write("e.json", R"({ "graph": "g.json", "tabulate": ["t"], )" + members + "}");
+    return complaints("-i '" + file + "'", schema);
+  };
+  EXPECT_EQ(complaints_of_experiment(R"("vary": { "a": [1], "b": { "from": 1, "to": 2, "count": 3, "scale": "log" },
+      "c": { "levels": { "x": { "k": 1 } } }, "d": { "together": { "e": [1, 2], "f": [3, 4] } } }, "seeds": [1, 2])"),
+            "");
+  EXPECT_THAT(complaints_of_experiment(R"("vry": {})"), HasSubstr("vry"));
+  EXPECT_THAT(complaints_of_experiment(R"("vary": { "a": [] })"), HasSubstr("a"));
+  EXPECT_THAT(complaints_of_experiment(R"("repeats": 0)"), HasSubstr("0 is less than the minimum of 1"));
 }
 
-TEST_F(Schema, IsNamedByEveryPipeline) {
-  for (const auto& entry : fs::recursive_directory_iterator(pipelines)) {
-    if (entry.path().extension() != ".json" || entry.path().filename() == "talkgraph.schema.json") continue;
-    std::ifstream file(entry.path());
-    const std::string named = Json::parse(file).value("$schema", "");
-    EXPECT_TRUE(fs::exists(entry.path().parent_path() / named) && named.ends_with("talkgraph.schema.json"))
-        << entry.path();
-  }
+TEST_F(Schema, BesideThePipelinesIsUpToDate) {
+  const auto there = [](const char* name) {
+    std::ifstream file(pipelines + name);
+    return Json::parse(file, nullptr, false);
+  };
+  EXPECT_TRUE(there("talkgraph.schema.json") == json_schema(all_nodes()))
+      << "stale: run build/talkgraph schema -o pipelines/talkgraph.schema.json";
+  EXPECT_TRUE(there("talkgraph.experiment.schema.json") == experiment_schema())
+      << "stale: run build/talkgraph schema --experiment -o pipelines/talkgraph.experiment.schema.json";
+}
+
+TEST_F(Schema, IsNamedByEveryPipelineAndExperiment) {
+  std::size_t all = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(pipelines))
+    all += entry.path().extension() == ".json" && !entry.path().filename().string().starts_with("talkgraph.");
+  EXPECT_EQ(files_naming("talkgraph.schema.json").size() + files_naming("talkgraph.experiment.schema.json").size(),
+            all);
 }
 
 }  // namespace

@@ -76,8 +76,8 @@ TEST_F(Load, SetsParametersAndPaths) {
   ASSERT_TRUE(graph) << diagnostics.str();
   EXPECT_EQ(graph->nodes[0].functor->parameters()["to"], 9);
   EXPECT_EQ(graph->nodes[2].functor->parameters()["bias"], 0.5);
-  expect_error(train_then_apply, "--set:1:1", "no parameter \"m\" (did you mean \"n\"?)", {"m=7"});
-  expect_error(train_then_apply, "--set:1:1", "there is no \"itms\" (did you mean \"items\"?)",
+  expect_error(train_then_apply, "--set:1:1", "no parameter \"m\" to set (did you mean \"n\"?)", {"m=7"});
+  expect_error(train_then_apply, "--set:1:1", "there is no \"itms\" to set (did you mean \"items\"?)",
                {"nodes.itms.params.to=7"});
   expect_error(train_then_apply, "--set:1:1", "must be at least 0, got -1", {"n=-1"});
   expect_error(train_then_apply, "--set:1:1", "takes path=value", {"n"});

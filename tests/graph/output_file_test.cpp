@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <thread>
+#include <vector>
+
 #include "tests/temporary_folder.h"
 
 namespace talkgraph {
@@ -46,17 +49,29 @@ TEST(WriteFile, ReplacesAFileOrLeavesItAsItIs) {
   EXPECT_THAT(complaint(folder.path() / "folder"), HasSubstr("folder: cannot be written"));
 }
 
+TEST(OutputFile, ThreadsMayWriteTheSameFile) {
+  const test::TemporaryFolder folder;
+  std::vector<std::jthread> threads;
+  for (const char digit : {'1', '2', '3', '4'})
+    threads.emplace_back([&folder, digit] {
+      for (int i = 0; i < 200; ++i) EXPECT_NO_THROW(write_file(folder.path() / "a.txt", std::string(100, digit)));
+    });
+  threads.clear();
+  const auto text = folder.read("a.txt");
+  EXPECT_EQ(text, std::string(100, text.at(0)));
+}
+
 TEST(OutputFile, WhatAKilledProcessLeftIsSwept) {
   const test::TemporaryFolder folder;
-  folder.write("clips/a.part-99999999.mp4", "half");
-  folder.write("b.part-99999999", "half");
-  folder.write("c.part-" + std::to_string(getpid()) + ".txt", "at work");
+  folder.write("clips/a.part-99999999-1.mp4", "half");
+  folder.write("b.part-99999999-1", "half");
+  folder.write("c.part-" + std::to_string(getpid()) + "-1.txt", "at work");
   folder.write("part-1.txt", "a name");
   folder.write(".desk-99999999-abc/a.txt", "half");
   sweep_parts(folder.path());
-  EXPECT_FALSE(std::filesystem::exists(folder.file("clips/a.part-99999999.mp4")));
-  EXPECT_FALSE(std::filesystem::exists(folder.file("b.part-99999999")));
-  EXPECT_EQ(folder.read("c.part-" + std::to_string(getpid()) + ".txt"), "at work");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("clips/a.part-99999999-1.mp4")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("b.part-99999999-1")));
+  EXPECT_EQ(folder.read("c.part-" + std::to_string(getpid()) + "-1.txt"), "at work");
   EXPECT_EQ(folder.read("part-1.txt"), "a name");
   EXPECT_FALSE(std::filesystem::exists(folder.file(".desk-99999999-abc")));
 }

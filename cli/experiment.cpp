@@ -1,0 +1,142 @@
+#include "cli/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "cli/cache.h"
+#include "cli/signals.h"
+#include "experiment/crew.h"
+#include "experiment/page.h"
+#include "graph/output_file.h"
+#include "runtime/forecast.h"
+#include "runtime/progress.h"
+
+namespace talkgraph::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Status = TrialResult::Status;
+
+/// What a trial would take from the cache, and what it would compute.
+void list_trials(const Experiment& experiment, const std::vector<Graph>& graphs, const Cache& cache,
+                 const std::atomic<bool>* cancel) {
+  fmt::print("{:>7} {:>7}  {}\n", "kept", "to do", "run");
+  for (std::size_t t = 0; t < graphs.size(); ++t) {
+    const Forecast forecast(graphs[t], cache, cancel);
+    std::size_t kept = 0, missing = 0;
+    bool foreseen = true;
+    for (std::size_t n = 0; n < graphs[t].nodes.size(); ++n) {
+      const auto& type = *graphs[t].nodes[n].type;
+      if (!type.stored && !type.sink) continue;
+      const auto counts = forecast.counts(static_cast<int>(n));
+      kept += counts.load, missing += counts.call;
+      foreseen = foreseen && (counts.foreseen || counts.call == 0);
+    }
+    fmt::print("{:>7} {:>6}{}  {}\n", kept, missing, foreseen ? " " : "+", experiment.trials[t].name);
+  }
+  fmt::print("{} runs; kept: results that are found; to do: results that are made and kept (+: at least)\n",
+             graphs.size());
+}
+
+/// Says how the trials go, and has the results written now and then.
+class Journal {
+ public:
+  Journal(const Experiment& experiment, bool quiet, std::function<void()> write)
+      : experiment_(experiment), quiet_(quiet), write_(std::move(write)) {}
+
+  void changed(std::size_t trial, const TrialResult& result) {
+    if (result.status == Status::waiting) return started(trial);
+    ++ended_;
+    const auto& name = experiment_.trials[trial].name;
+    if (result.status == Status::failed)
+      fmt::print(stderr, "{}: failed: {}\n", name, result.error);
+    else if (result.status == Status::finished && !quiet_)
+      fmt::print(stderr, "[{}/{}] {}: done in {}, {} calls, {} found{}\n", ended_, experiment_.trials.size(), name,
+                 duration_text(result.wall), result.calls, result.loaded, left());
+    // Not after each of a thousand short trials.
+    if (Clock::now() - written_ < std::chrono::seconds(2)) return;
+    write_();
+    written_ = Clock::now();
+  }
+
+ private:
+  void started(std::size_t trial) const {
+    if (!quiet_) fmt::print(stderr, "{}: started\n", experiment_.trials[trial].name);
+  }
+
+  std::string left() const {
+    const std::size_t waiting = experiment_.trials.size() - ended_;
+    const double elapsed = std::chrono::duration<double>(Clock::now() - begun_).count();
+    if (waiting == 0) return "";
+    return fmt::format("; about {} left",
+                       duration_text(elapsed / static_cast<double>(ended_) * static_cast<double>(waiting)));
+  }
+
+  const Experiment& experiment_;
+  const bool quiet_;
+  const std::function<void()> write_;
+  const Clock::time_point begun_ = Clock::now();
+  Clock::time_point written_ = begun_;
+  std::size_t ended_ = 0;
+};
+
+ExitCode tell_end(const std::vector<TrialResult>& results) {
+  const auto count = [&](Status status) {
+    return std::count_if(results.begin(), results.end(), [&](const auto& r) { return r.status == status; });
+  };
+  if (count(Status::stopped) > 0 || count(Status::waiting) > 0) {
+    fmt::print(stderr, "stopped after {} of {} runs; the same command goes on\n", count(Status::finished),
+               results.size());
+    return cancelled;
+  }
+  if (const auto n = count(Status::failed)) {
+    fmt::print(stderr, "{} of {} runs failed, as said above\n", n, results.size());
+    return failed;
+  }
+  return success;
+}
+
+}  // namespace
+
+int run_experiment(const std::string& file, const ExperimentCommand& command, const Registry& registry) {
+  Diagnostics diagnostics;
+  const auto experiment = load_experiment(file, diagnostics);
+  const auto graphs = experiment ? load_trials(*experiment, registry, command.run.sets, diagnostics)
+                                 : std::optional<std::vector<Graph>>();
+  if (!graphs) {
+    fmt::print(stderr, "{}\n", diagnostics.str());
+    return usage;
+  }
+  const InterruptGuard guard;
+  const auto cache = open_cache(command.run);
+  if (command.dry_run) {
+    if (!cache) throw std::invalid_argument("--dry-run looks into the cache: not with --no-cache");
+    list_trials(*experiment, *graphs, *cache, guard.flag());
+    return success;
+  }
+  const auto folder =
+      command.run.folder.empty() ? std::filesystem::path("runs") / experiment->name : command.run.folder;
+  std::vector<TrialResult> results;
+  const auto write = [&] { write_results(*experiment, *graphs, results, folder); };
+  Journal journal(*experiment, command.run.quiet, write);
+  CrewOptions options;
+  options.threads = command.run.threads;
+  options.memory = command.memory;
+  options.keep_going = command.run.keep_going;
+  options.cache = cache.get();
+  options.folder = folder;
+  options.cancel = guard.flag();
+  options.on_change = [&](std::size_t trial, const TrialResult& result) { journal.changed(trial, result); };
+  options.on_warning = [&](std::size_t trial, std::string_view message) {
+    fmt::print(stderr, "{}: warning: {}\n", experiment->trials[trial].name, message);
+  };
+  run_trials(*experiment, *graphs, options, results);
+  write();
+  fmt::print("{}\n", (folder / "experiment.html").string());
+  return tell_end(results);
+}
+
+}  // namespace talkgraph::cli

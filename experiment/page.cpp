@@ -1,0 +1,283 @@
+#include "experiment/page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "graph/differences.h"
+#include "graph/output_file.h"
+#include "nodes/plot/svg.h"
+#include "nodes/report/page.h"
+
+namespace talkgraph {
+namespace {
+
+constexpr std::size_t most_items = 4, most_measures = 12;
+
+template <class T>
+void add_once(std::vector<T>& list, const T& element) {
+  if (std::find(list.begin(), list.end(), element) == list.end()) list.push_back(element);
+}
+
+std::string text_of(const Json& cell) { return cell.is_string() ? cell.get<std::string>() : cell.dump(); }
+
+const Trial& first_of(const Experiment& experiment, std::size_t setting) {
+  return *std::find_if(experiment.trials.begin(), experiment.trials.end(),
+                       [&](const Trial& t) { return t.setting == setting; });
+}
+
+/// "latent 2, filters 20", without the factor `except`.
+std::string setting_text(const Experiment& experiment, std::size_t setting, std::optional<std::size_t> except = {}) {
+  std::vector<std::string> parts;
+  const auto& levels = first_of(experiment, setting).levels;
+  for (std::size_t f = 0; f < levels.size(); ++f)
+    if (f != except)
+      parts.push_back(levels[f].is_string() ? text_of(levels[f]) : experiment.factors[f] + " " + text_of(levels[f]));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// The first factor whose levels are numbers, more than one of them.
+std::optional<std::size_t> number_factor(const Experiment& experiment) {
+  for (std::size_t f = 0; f < experiment.factors.size(); ++f) {
+    std::set<double> values;
+    bool numbers = true;
+    for (const auto& trial : experiment.trials) {
+      numbers = numbers && trial.levels[f].is_number();
+      if (numbers) values.insert(trial.levels[f].get<double>());
+    }
+    if (numbers && values.size() > 1) return f;
+  }
+  return {};
+}
+
+/// Estimates of one output, by measure, in the order in which they came.
+struct OutputEstimates {
+  std::string output;
+  std::vector<std::string> measures;
+  std::vector<const Estimate*> all;
+};
+
+std::vector<OutputEstimates> by_output(const std::vector<Estimate>& estimates) {
+  std::vector<OutputEstimates> out;
+  for (const auto& e : estimates) {
+    auto it = std::find_if(out.begin(), out.end(), [&](const auto& o) { return o.output == e.output; });
+    if (it == out.end()) it = out.insert(out.end(), OutputEstimates{e.output, {}, {}});
+    add_once(it->measures, e.measure);
+    it->all.push_back(&e);
+  }
+  return out;
+}
+
+std::string joined(const std::string& a, const std::string& b) { return a.empty() ? b : b.empty() ? a : a + ", " + b; }
+
+void sort_by_x(Series& series) {
+  std::vector<std::size_t> order(series.x.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return series.x[a] < series.x[b]; });
+  for (auto* values : {&series.x, &series.y, &series.spread}) {
+    std::vector<double> sorted;
+    for (const auto i : order) sorted.push_back((*values)[i]);
+    *values = std::move(sorted);
+  }
+}
+
+Panel line_panel(const Experiment& experiment, const OutputEstimates& estimates, const std::string& measure,
+                 std::size_t factor) {
+  Panel panel{measure, experiment.factors[factor], "", {}};
+  for (const auto* e : estimates.all) {
+    // Every panel has all series, so that they share their colours.
+    const std::string name = joined(setting_text(experiment, e->setting, factor), e->row);
+    auto it = std::find_if(panel.series.begin(), panel.series.end(), [&](const Series& s) { return s.name == name; });
+    if (it == panel.series.end()) it = panel.series.insert(panel.series.end(), Series{name, {}, {}, {}});
+    if (e->measure != measure) continue;
+    it->x.push_back(first_of(experiment, e->setting).levels[factor].get<double>());
+    it->y.push_back(e->mean);
+    it->spread.push_back(e->half_width);
+  }
+  for (auto& series : panel.series) sort_by_x(series);
+  return panel;
+}
+
+BarPanel bar_panel(const Experiment& experiment, const OutputEstimates& estimates, const std::string& measure) {
+  BarPanel panel{measure, {}};
+  for (const auto* e : estimates.all)
+    if (e->measure == measure)
+      panel.bars.push_back({joined(setting_text(experiment, e->setting), e->row), e->mean, e->half_width});
+  return panel;
+}
+
+/// A table whose cells are HTML already.
+std::string table(const std::string& caption, const std::vector<std::string>& head,
+                  const std::vector<std::vector<std::string>>& lines) {
+  std::string out =
+      fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr>", escape_markup(caption));
+  for (const auto& h : head) out += "<th scope=\"col\">" + escape_markup(h) + "</th>";
+  out += "</tr></thead>\n<tbody>\n";
+  for (const auto& line : lines) out += fmt::format("<tr><td>{}</td></tr>\n", fmt::join(line, "</td><td>"));
+  return out + "</tbody>\n</table></div>\n";
+}
+
+std::string number_text(const Estimate& e) {
+  return std::isnan(e.half_width) ? fmt::format("{:.4g}", e.mean)
+                                  : fmt::format("{:.3g} ± {:.2g}", e.mean, e.half_width);
+}
+
+std::string score_table(const Experiment& experiment, const OutputEstimates& estimates) {
+  std::vector<std::string> head = experiment.factors;
+  const bool rows =
+      std::any_of(estimates.all.begin(), estimates.all.end(), [](const auto* e) { return !e->row.empty(); });
+  if (rows) head.emplace_back("row");
+  head.insert(head.end(), estimates.measures.begin(), estimates.measures.end());
+  std::vector<std::pair<std::size_t, std::string>> names;
+  std::map<std::tuple<std::size_t, std::string, std::string>, const Estimate*> cells;
+  for (const auto* e : estimates.all) {
+    add_once(names, {e->setting, e->row});
+    cells[{e->setting, e->row, e->measure}] = e;
+  }
+  std::vector<std::vector<std::string>> lines;
+  for (const auto& [setting, row] : names) {
+    auto& line = lines.emplace_back();
+    for (const auto& level : first_of(experiment, setting).levels) line.push_back(escape_markup(text_of(level)));
+    if (rows) line.push_back(escape_markup(row));
+    for (const auto& measure : estimates.measures) {
+      const auto it = cells.find({setting, row, measure});
+      line.push_back(it == cells.end() ? "–" : number_text(*it->second));
+    }
+  }
+  return table(estimates.output, head, lines);
+}
+
+/// Says what the numbers behind ± are.
+std::string interval_note(const std::vector<Estimate>& estimates) {
+  std::size_t repeats = 0, items = 0;
+  for (const auto& e : estimates) {
+    auto& most = e.over_items ? items : repeats;
+    most = std::max(most, e.n);
+  }
+  std::string over;
+  if (repeats > 1) over = fmt::format("{} repeats with seeds of their own", repeats);
+  if (items > 1) over += fmt::format("{}{} items of one run", over.empty() ? "" : " or ", items);
+  if (over.empty()) return "One run of each setting: there are no confidence intervals.";
+  return fmt::format("Means over {}; after ± half the width of the 95 % confidence interval (Student's t).", over);
+}
+
+std::string figure_of(const Shown& shown, const std::string& label, const std::string& folder) {
+  if (shown.value.type().type == port_type<Plot>) {
+    auto plot = shown.value.get<Plot>();
+    plot.title = label;
+    return html_plot(plot);
+  }
+  auto artifact = shown.value.get<Artifact>();
+  artifact.path = folder + artifact.path;
+  return html_clip(label, artifact);
+}
+
+/// The same item of all settings beside each other.
+std::string clips(const Experiment& experiment, const std::vector<TrialResult>& results) {
+  std::vector<std::pair<std::string, std::string>> names;  // output, item
+  std::map<std::string, std::size_t> items;                // of an output
+  for (const auto& result : results)
+    for (const auto& shown : result.shown)
+      if (std::find(names.begin(), names.end(), std::pair(shown.output, shown.item)) == names.end() &&
+          items[shown.output]++ < most_items)
+        names.emplace_back(shown.output, shown.item);
+  std::string out;
+  for (const auto& [output, item] : names) {
+    out += fmt::format("<h3>{}</h3>\n<div class=\"clips\">\n", escape_markup(joined(output, item)));
+    std::set<std::size_t> settings;
+    for (std::size_t t = 0; t < results.size(); ++t)
+      for (const auto& shown : results[t].shown)
+        if (shown.output == output && shown.item == item && settings.insert(experiment.trials[t].setting).second)
+          out += figure_of(shown, setting_text(experiment, experiment.trials[t].setting),
+                           "trials/" + experiment.trials[t].name + "/");
+    out += "</div>\n";
+  }
+  return out.empty() ? "" : "<h2>Clips</h2>\n" + out;
+}
+
+std::string trial_table(const Experiment& experiment, const std::vector<Graph>& graphs,
+                        const std::vector<TrialResult>& results) {
+  std::vector<std::vector<std::string>> lines;
+  for (std::size_t t = 0; t < results.size(); ++t) {
+    const auto& trial = experiment.trials[t];
+    const auto& result = results[t];
+    std::string what = t == 0 ? "the others are compared with this one" : "nothing";
+    std::vector<std::string> differ;
+    if (t > 0)
+      for (const char* part : {"nodes", "seed"})
+        for (const auto& d : differences(graphs[0].resolved[part], graphs[t].resolved[part]))
+          differ.push_back(escape_markup(d.starts_with(':') ? part + d : d));
+    if (!differ.empty()) what = fmt::format("{}", fmt::join(differ, "<br>"));
+    std::string status = status_text(result.status);
+    if (!result.error.empty()) status += ": " + result.error;
+    const bool ran = result.status != TrialResult::Status::waiting;
+    const std::string name = escape_markup(trial.name);
+    lines.push_back({ran ? fmt::format("<a href=\"trials/{0}/\">{0}</a>", name) : name, escape_markup(status),
+                     fmt::format("{:.1f}", result.wall), fmt::format("{}", result.calls),
+                     fmt::format("{}", result.loaded), "<small>" + what + "</small>"});
+  }
+  return "<h2>Runs</h2>\n" + table("How each went, and what it did differently",
+                                   {"run", "status", "seconds", "calls", "found", "differs in"}, lines);
+}
+
+}  // namespace
+
+std::vector<Plot> plot_estimates(const Experiment& experiment, const std::vector<Estimate>& estimates) {
+  std::vector<Plot> plots;
+  const auto factor = number_factor(experiment);
+  for (auto& of_output : by_output(estimates)) {
+    auto& measures = of_output.measures;
+    if (!experiment.plot.empty())
+      std::erase_if(measures, [&](const auto& m) {
+        return std::find(experiment.plot.begin(), experiment.plot.end(), m) == experiment.plot.end();
+      });
+    if (measures.size() > most_measures) measures.resize(most_measures);
+    if (measures.empty()) continue;
+    std::vector<Panel> lines;
+    std::vector<BarPanel> bars;
+    for (const auto& measure : measures) {
+      if (factor)
+        lines.push_back(line_panel(experiment, of_output, measure, *factor));
+      else
+        bars.push_back(bar_panel(experiment, of_output, measure));
+    }
+    plots.push_back({of_output.output,
+                     factor ? draw_panels(of_output.output, lines, {2, 460, 300}) : draw_bars(of_output.output, bars)});
+  }
+  return plots;
+}
+
+std::string experiment_page(const Experiment& experiment, const std::vector<Graph>& graphs,
+                            const std::vector<TrialResult>& results) {
+  const auto estimates = estimate(experiment, results);
+  const auto finished = std::count_if(results.begin(), results.end(),
+                                      [](const TrialResult& r) { return r.status == TrialResult::Status::finished; });
+  std::string page = html_open(experiment.name, experiment.description);
+  page += fmt::format(
+      "<p>{} of {} runs finished, of <code>{}</code>. All numbers: <a href=\"results.csv\">results.csv</a>, "
+      "<a href=\"results.json\">results.json</a>; means: <a href=\"means.csv\">means.csv</a>.</p>\n",
+      finished, results.size(), escape_markup(experiment.graph.filename().string()));
+  if (!estimates.empty()) page += "<h2>Scores</h2>\n<p>" + interval_note(estimates) + "</p>\n";
+  for (const auto& of_output : by_output(estimates)) page += score_table(experiment, of_output);
+  for (const auto& plot : plot_estimates(experiment, estimates)) page += html_plot(plot);
+  return page + clips(experiment, results) + trial_table(experiment, graphs, results) + html_close();
+}
+
+void write_results(const Experiment& experiment, const std::vector<Graph>& graphs,
+                   const std::vector<TrialResult>& results, const std::filesystem::path& folder) {
+  const auto estimates = estimate(experiment, results);
+  write_file(folder / "results.csv", tidy_csv(experiment, results));
+  write_file(folder / "results.json", tidy_json(experiment, results).dump(1) + "\n");
+  write_file(folder / "means.csv", estimates_csv(experiment, estimates));
+  for (const auto& plot : plot_estimates(experiment, estimates))
+    write_file(folder / "plots" / (plot.title + ".svg"), plot.svg);
+  write_file(folder / "experiment.html", experiment_page(experiment, graphs, results));
+}
+
+}  // namespace talkgraph

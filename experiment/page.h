@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiment/results.h"
+#include "nodes/types/report.h"
+
+namespace talkgraph {
+
+/// Means with their intervals, a picture an output: as lines over the first factor that is a number, else as bars.
+std::vector<Plot> plot_estimates(const Experiment& experiment, const std::vector<Estimate>& estimates);
+
+/// The page that compares the trials: scores, plots, clips beside each other, what differed, how each trial went.
+std::string experiment_page(const Experiment& experiment, const std::vector<Graph>& graphs,
+                            const std::vector<TrialResult>& results);
+
+/// Writes to the experiment's folder, each file whole or not at all:
+///   results.csv, results.json  one line a number
+///   means.csv                  means with 95 % confidence intervals
+///   plots/OUTPUT.svg
+///   experiment.html            the page
+void write_results(const Experiment& experiment, const std::vector<Graph>& graphs,
+                   const std::vector<TrialResult>& results, const std::filesystem::path& folder);
+
+}  // namespace talkgraph

@@ -1,0 +1,188 @@
+#include "experiment/results.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "nodes/report/files.h"
+#include "nodes/types/report.h"
+
+namespace talkgraph {
+namespace {
+
+/// Calls f(item, value) for a single output, or each item of a stream.
+template <class F>
+void for_each_value(const RunResult::Output& output, F f) {
+  if (!output.stream && output.value) f(std::string(), output.value);
+  for (const auto& item : output.items) f(item.key, item.value);
+}
+
+void observe_table(const Table& table, const std::string& output, const std::string& item,
+                   std::vector<Observation>& out) {
+  for (std::size_t r = 0; r < table.rows.size(); ++r)
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      if (!std::isnan(table.cells[r][c]))
+        out.push_back({output, item, table.rows[r], table.columns[c], table.cells[r][c]});
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+/// The values of one row and measure of a setting: of each trial, one an item.
+using Sample = std::vector<std::vector<double>>;
+
+Estimate estimate_of(const Sample& sample) {
+  Estimate out;
+  std::vector<double> means;
+  for (const auto& trial : sample) means.push_back(mean_of(trial));
+  out.over_items = means.size() == 1 && sample[0].size() > 1;
+  const auto& values = out.over_items ? sample[0] : means;
+  out.n = values.size();
+  out.mean = mean_of(values);
+  out.half_width = out.n > 1 ? confidence_half_width(values) : NAN;
+  return out;
+}
+
+std::string csv_cell(const Json& cell) { return csv_text(cell.is_string() ? cell.get<std::string>() : cell.dump()); }
+
+std::string csv_line(const std::vector<std::string>& cells) { return fmt::format("{}\n", fmt::join(cells, ",")); }
+
+/// Calls f(trial, observation) for all that was observed.
+template <class F>
+void for_each_observation(const Experiment& experiment, const std::vector<TrialResult>& results, F f) {
+  for (std::size_t t = 0; t < results.size(); ++t)
+    for (const auto& o : results[t].observations) f(experiment.trials[t], o);
+}
+
+}  // namespace
+
+const char* status_text(TrialResult::Status status) {
+  switch (status) {
+    case TrialResult::Status::waiting:
+      return "not run";
+    case TrialResult::Status::finished:
+      return "finished";
+    case TrialResult::Status::failed:
+      return "failed";
+    case TrialResult::Status::stopped:
+      return "stopped";
+  }
+  return "";
+}
+
+std::vector<Observation> observe(const Experiment& experiment, const RunResult& run) {
+  std::vector<Observation> out;
+  for (const auto& name : experiment.tabulate.names)
+    for_each_value(run.output(name), [&](const std::string& item, const Value& value) {
+      if (value.type().type == port_type<Table>)
+        observe_table(value.get<Table>(), name, item, out);
+      else
+        for (const auto& [measure, v] : value.get<Scores>().values)
+          if (!std::isnan(v)) out.push_back({name, item, "", measure, v});
+    });
+  return out;
+}
+
+std::vector<Shown> pick_shown(const Experiment& experiment, const RunResult& run) {
+  std::vector<Shown> out;
+  for (const auto& name : experiment.show.names)
+    for_each_value(run.output(name), [&](const std::string& item, const Value& value) {
+      out.push_back({name, item, value});
+    });
+  return out;
+}
+
+double confidence_half_width(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  const double mean = mean_of(values);
+  double squares = 0;
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  const double t = boost::math::quantile(boost::math::students_t(n - 1), 0.975);
+  return t * std::sqrt(squares / (n - 1) / n);
+}
+
+std::vector<Estimate> estimate(const Experiment& experiment, const std::vector<TrialResult>& results) {
+  using Name = std::tuple<std::size_t, std::string, std::string, std::string>;
+  std::map<Name, Sample> samples;
+  std::map<Name, std::size_t> last;
+  std::vector<Name> order;
+  std::size_t trial = 0;
+  for (const auto& result : results) {
+    for (const auto& o : result.observations) {
+      if (o.measure.ends_with(" std")) continue;
+      const Name name{experiment.trials[trial].setting, o.output, o.row, o.measure};
+      auto& sample = samples[name];
+      if (sample.empty()) order.push_back(name);
+      if (sample.empty() || last[name] != trial) sample.emplace_back();
+      last[name] = trial;
+      sample.back().push_back(o.value);
+    }
+    ++trial;
+  }
+  std::vector<Estimate> out;
+  for (const auto& name : order) {
+    Estimate& e = out.emplace_back(estimate_of(samples[name]));
+    std::tie(e.setting, e.output, e.row, e.measure) = name;
+  }
+  return out;
+}
+
+std::string tidy_csv(const Experiment& experiment, const std::vector<TrialResult>& results) {
+  std::vector<std::string> head{"trial"};
+  for (const auto& factor : experiment.factors) head.push_back(csv_text(factor));
+  for (const char* more : {"seed", "output", "item", "row", "measure", "value"}) head.emplace_back(more);
+  std::string out = csv_line(head);
+  for_each_observation(experiment, results, [&](const Trial& trial, const Observation& o) {
+    std::vector<std::string> line{csv_text(trial.name)};
+    for (const auto& level : trial.levels) line.push_back(csv_cell(level));
+    line.push_back(trial.seed ? fmt::format("{}", *trial.seed) : "");
+    for (const auto* text : {&o.output, &o.item, &o.row, &o.measure}) line.push_back(csv_text(*text));
+    line.push_back(fmt::format("{}", o.value));
+    out += csv_line(line);
+  });
+  return out;
+}
+
+Json tidy_json(const Experiment& experiment, const std::vector<TrialResult>& results) {
+  Json out = Json::array();
+  for_each_observation(experiment, results, [&](const Trial& trial, const Observation& o) {
+    Json& line = out.emplace_back(Json{{"trial", trial.name}});
+    for (std::size_t f = 0; f < experiment.factors.size(); ++f) line[experiment.factors[f]] = trial.levels[f];
+    line["seed"] = trial.seed ? Json(*trial.seed) : Json();
+    line.update({{"output", o.output}, {"item", o.item}, {"row", o.row}, {"measure", o.measure}});
+    line["value"] = std::isfinite(o.value) ? Json(o.value) : Json();
+  });
+  return out;
+}
+
+std::string estimates_csv(const Experiment& experiment, const std::vector<Estimate>& estimates) {
+  std::vector<std::string> head;
+  for (const auto& factor : experiment.factors) head.push_back(csv_text(factor));
+  for (const char* more : {"output", "row", "measure", "n", "over", "mean", "low", "high"}) head.emplace_back(more);
+  std::string out = csv_line(head);
+  std::vector<const Trial*> of_setting(experiment.settings);
+  for (const auto& trial : experiment.trials) of_setting[trial.setting] = &trial;
+  for (const auto& e : estimates) {
+    std::vector<std::string> line;
+    for (const auto& level : of_setting[e.setting]->levels) line.push_back(csv_cell(level));
+    for (const auto* text : {&e.output, &e.row, &e.measure}) line.push_back(csv_text(*text));
+    line.push_back(fmt::format("{}", e.n));
+    line.emplace_back(e.over_items ? "items" : "repeats");
+    line.push_back(fmt::format("{}", e.mean));
+    const bool single = std::isnan(e.half_width);
+    line.push_back(single ? "" : fmt::format("{}", e.mean - e.half_width));
+    line.push_back(single ? "" : fmt::format("{}", e.mean + e.half_width));
+    out += csv_line(line);
+  }
+  return out;
+}
+
+}  // namespace talkgraph

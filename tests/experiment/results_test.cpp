@@ -1,0 +1,150 @@
+#include "experiment/results.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiment/page.h"
+#include "nodes/types/report.h"
+#include "tests/temporary_folder.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two settings of one factor, two seeds each.
+Experiment two_settings() {
+  Experiment e;
+  e.name = "test";
+  e.factors = {"filters"};
+  e.settings = 2;
+  e.tabulate.names = {"scores"};
+  for (const int filters : {20, 26})
+    for (const int seed : {1, 2}) {
+      Trial& trial = e.trials.emplace_back();
+      trial.name = "filters=" + std::to_string(filters) + ",seed=" + std::to_string(seed);
+      trial.levels = {filters};
+      trial.setting = filters == 20 ? 0 : 1;
+      trial.seed = seed;
+    }
+  return e;
+}
+
+TrialResult result_of(std::vector<Observation> observations) {
+  TrialResult r;
+  r.status = TrialResult::Status::finished;
+  r.observations = std::move(observations);
+  return r;
+}
+
+TEST(Results, IntervalIsStudents) {
+  // Mean 3, standard deviation sqrt(2.5), t of 4 degrees of freedom 2.7764451052.
+  EXPECT_NEAR(confidence_half_width({1, 2, 3, 4, 5}), 2.7764451051977987 * std::sqrt(2.5 / 5), 1e-12);
+  // Two numbers: t of one degree is 12.706204736.
+  EXPECT_NEAR(confidence_half_width({0, 2}), 12.706204736432095, 1e-9);
+  EXPECT_EQ(confidence_half_width({7, 7, 7}), 0);
+}
+
+TEST(Results, AreObservedFromTablesAndScores) {
+  Experiment e;
+  e.tabulate.names = {"table", "each"};
+  RunResult run;
+  Table table{"", "method", {"acc", "amse"}, {"ours"}, {{0.5, NAN}}};
+  run.outputs.push_back({"table", false, Value::of(std::move(table)), {}});
+  run.outputs.push_back(
+      {"each", true, {}, {{"a", Value::of(Scores{{{"acc", 1}}})}, {"b", Value::of(Scores{{{"acc", 2}}})}}});
+  const auto all = observe(e, run);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].row, "ours");
+  EXPECT_EQ(all[0].measure, "acc");
+  EXPECT_EQ(all[2].item, "b");
+  EXPECT_EQ(all[2].value, 2);
+}
+
+TEST(Results, MeansAreOverRepeats) {
+  const auto e = two_settings();
+  const auto estimates =
+      estimate(e, {result_of({{"scores", "", "ours", "acc", 1}, {"scores", "", "ours", "acc std", 9}}),
+                   result_of({{"scores", "", "ours", "acc", 3}}), result_of({{"scores", "", "ours", "acc", 10}}),
+                   result_of({})});
+  ASSERT_EQ(estimates.size(), 2u);
+  EXPECT_EQ(estimates[0].mean, 2);
+  EXPECT_EQ(estimates[0].n, 2u);
+  EXPECT_FALSE(estimates[0].over_items);
+  EXPECT_NEAR(estimates[0].half_width, 12.706204736432095, 1e-9);
+  EXPECT_EQ(estimates[1].setting, 1u);
+  EXPECT_EQ(estimates[1].mean, 10);
+  EXPECT_TRUE(std::isnan(estimates[1].half_width));
+}
+
+TEST(Results, ItemsOfARepeatAreAveragedFirst) {
+  const auto e = two_settings();
+  const auto estimates = estimate(
+      e, {result_of({{"s", "a", "", "acc", 1}, {"s", "b", "", "acc", 2}, {"s", "c", "", "acc", 3}}),
+          result_of({{"s", "a", "", "acc", 5}}), result_of({{"s", "a", "", "acc", 1}, {"s", "b", "", "acc", 2}})});
+  ASSERT_EQ(estimates.size(), 2u);
+  EXPECT_EQ(estimates[0].mean, 3.5);
+  EXPECT_EQ(estimates[0].n, 2u);
+  EXPECT_TRUE(estimates[1].over_items);
+  EXPECT_EQ(estimates[1].n, 2u);
+}
+
+TEST(Results, TidyTableHasALineANumber) {
+  const auto e = two_settings();
+  const std::vector<TrialResult> results = {result_of({{"scores", "", "a, b", "acc", 0.25}}),
+                                            result_of({{"scores", "k", "", "acc", INFINITY}})};
+  EXPECT_EQ(tidy_csv(e, results),
+            "trial,filters,seed,output,item,row,measure,value\n"
+            "\"filters=20,seed=1\",20,1,scores,,\"a, b\",acc,0.25\n"
+            "\"filters=20,seed=2\",20,2,scores,k,,acc,inf\n");
+  const auto json = tidy_json(e, results);
+  EXPECT_EQ(json[0]["filters"], 20);
+  EXPECT_EQ(json[0]["value"], 0.25);
+  EXPECT_TRUE(json[1]["value"].is_null());
+  EXPECT_EQ(estimates_csv(e, estimate(e, {results[0]})),
+            "filters,output,row,measure,n,over,mean,low,high\n20,scores,\"a, b\",acc,1,repeats,0.25,,\n");
+}
+
+TEST(Results, PlotsAreLinesOverANumberAndBarsElse) {
+  auto e = two_settings();
+  const std::vector<TrialResult> results = {
+      result_of({{"scores", "", "ours", "acc", 1}}), result_of({{"scores", "", "ours", "acc", 2}}),
+      result_of({{"scores", "", "ours", "acc", 3}}), result_of({{"scores", "", "ours", "acc", 5}})};
+  const auto lines = plot_estimates(e, estimate(e, results));
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0].svg, HasSubstr(">filters</text>"));
+  for (auto& trial : e.trials) trial.levels[0] = trial.levels[0] == 20 ? "MFCC" : "PLP";
+  const auto bars = plot_estimates(e, estimate(e, results));
+  EXPECT_THAT(bars[0].svg, HasSubstr(">MFCC, ours</text>"));
+  e.plot = {"amse"};
+  EXPECT_TRUE(plot_estimates(e, estimate(e, results)).empty());
+}
+
+TEST(Results, PageShowsScoresClipsAndHowRunsWent) {
+  const auto e = two_settings();
+  std::vector<Graph> graphs(4);
+  for (std::size_t g = 0; g < 4; ++g)
+    graphs[g].resolved = {{"nodes", {{"mel", {{"params", {{"filters", g < 2 ? 20 : 26}}}}}}}, {"seed", 1 + g % 2}};
+  std::vector<TrialResult> results(4);
+  results[0] = result_of({{"scores", "", "ours", "acc", 1}});
+  results[0].shown = {{"clips", "u1", Value::of(Artifact{"clips/u 1.mp4", ""})}};
+  results[1].status = TrialResult::Status::failed;
+  results[1].error = "no <sound>";
+  const test::TemporaryFolder folder;
+  write_results(e, graphs, results, folder.path());
+  const auto page = folder.read("experiment.html");
+  EXPECT_THAT(page, HasSubstr("1 of 4 runs finished"));
+  EXPECT_THAT(page, HasSubstr("trials/filters%3D20%2Cseed%3D1/clips/u%201.mp4"));
+  EXPECT_THAT(page, HasSubstr("failed: no &lt;sound&gt;"));
+  EXPECT_THAT(page, HasSubstr("not run"));
+  EXPECT_THAT(page, HasSubstr("mel/params/filters: 20 -&gt; 26"));
+  EXPECT_THAT(page, Not(HasSubstr("nan")));
+  for (const char* file : {"results.csv", "results.json", "means.csv", "plots/scores.svg"})
+    EXPECT_FALSE(folder.read(file).empty()) << file;
+}
+
+}  // namespace
+}  // namespace talkgraph
