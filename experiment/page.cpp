@@ -112,20 +112,29 @@ BarPanel bar_panel(const Experiment& experiment, const OutputEstimates& estimate
   return panel;
 }
 
-/// A table whose cells are HTML already.
+std::string number_cell(const std::string& html) { return "<td>" + html + "</td>"; }
+std::string text_cell(const std::string& html) { return "<td class=\"text\">" + html + "</td>"; }
+
+/// Headings are texts, cells are cells; a heading stands where the cells below it do.
 std::string table(const std::string& caption, const std::vector<std::string>& head,
                   const std::vector<std::vector<std::string>>& lines) {
   std::string out =
       fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr>", escape_markup(caption));
-  for (const auto& h : head) out += "<th scope=\"col\">" + escape_markup(h) + "</th>";
+  for (std::size_t c = 0; c < head.size(); ++c) {
+    const bool text = !lines.empty() && lines[0][c].starts_with("<td class");
+    out += fmt::format("<th scope=\"col\"{}>{}</th>", text ? " class=\"text\"" : "", escape_markup(head[c]));
+  }
   out += "</tr></thead>\n<tbody>\n";
-  for (const auto& line : lines) out += fmt::format("<tr><td>{}</td></tr>\n", fmt::join(line, "</td><td>"));
+  for (const auto& line : lines) out += fmt::format("<tr>{}</tr>\n", fmt::join(line, ""));
   return out + "</tbody>\n</table></div>\n";
 }
 
+/// What rounding left of a zero is shown as one; the files keep every digit.
+double shown_number(double v) { return std::abs(v) < 1e-12 ? 0 : v; }
+
 std::string number_text(const Estimate& e) {
-  return std::isnan(e.half_width) ? fmt::format("{:.4g}", e.mean)
-                                  : fmt::format("{:.3g} ± {:.2g}", e.mean, e.half_width);
+  return std::isnan(e.half_width) ? fmt::format("{:.4g}", shown_number(e.mean))
+                                  : fmt::format("{:.3g} ± {:.2g}", shown_number(e.mean), shown_number(e.half_width));
 }
 
 std::string score_table(const Experiment& experiment, const OutputEstimates& estimates) {
@@ -143,11 +152,12 @@ std::string score_table(const Experiment& experiment, const OutputEstimates& est
   std::vector<std::vector<std::string>> lines;
   for (const auto& [setting, row] : names) {
     auto& line = lines.emplace_back();
-    for (const auto& level : first_of(experiment, setting).levels) line.push_back(escape_markup(text_of(level)));
-    if (rows) line.push_back(escape_markup(row));
+    for (const auto& level : first_of(experiment, setting).levels)
+      line.push_back(text_cell(escape_markup(text_of(level))));
+    if (rows) line.push_back(text_cell(escape_markup(row)));
     for (const auto& measure : estimates.measures) {
       const auto it = cells.find({setting, row, measure});
-      line.push_back(it == cells.end() ? "–" : number_text(*it->second));
+      line.push_back(number_cell(it == cells.end() ? "–" : number_text(*it->second)));
     }
   }
   return table(estimates.output, head, lines);
@@ -178,17 +188,28 @@ std::string figure_of(const Shown& shown, const std::string& label, const std::s
   return html_clip(label, artifact);
 }
 
+/// Of each output the items that most settings have, in their order.
+std::vector<std::pair<std::string, std::string>> items_to_show(const Experiment& experiment,
+                                                               const std::vector<TrialResult>& results) {
+  using Name = std::pair<std::string, std::string>;  // output, item
+  std::vector<Name> names;
+  std::map<Name, std::set<std::size_t>> settings;
+  for (std::size_t t = 0; t < results.size(); ++t)
+    for (const auto& shown : results[t].shown) {
+      add_once(names, Name{shown.output, shown.item});
+      settings[{shown.output, shown.item}].insert(experiment.trials[t].setting);
+    }
+  std::stable_sort(names.begin(), names.end(),
+                   [&](const Name& a, const Name& b) { return settings[a].size() > settings[b].size(); });
+  std::map<std::string, std::size_t> count;
+  std::erase_if(names, [&](const Name& name) { return count[name.first]++ >= most_items; });
+  return names;
+}
+
 /// The same item of all settings beside each other.
 std::string clips(const Experiment& experiment, const std::vector<TrialResult>& results) {
-  std::vector<std::pair<std::string, std::string>> names;  // output, item
-  std::map<std::string, std::size_t> items;                // of an output
-  for (const auto& result : results)
-    for (const auto& shown : result.shown)
-      if (std::find(names.begin(), names.end(), std::pair(shown.output, shown.item)) == names.end() &&
-          items[shown.output]++ < most_items)
-        names.emplace_back(shown.output, shown.item);
   std::string out;
-  for (const auto& [output, item] : names) {
+  for (const auto& [output, item] : items_to_show(experiment, results)) {
     out += fmt::format("<h3>{}</h3>\n<div class=\"clips\">\n", escape_markup(joined(output, item)));
     std::set<std::size_t> settings;
     for (std::size_t t = 0; t < results.size(); ++t)
@@ -218,9 +239,10 @@ std::string trial_table(const Experiment& experiment, const std::vector<Graph>& 
     if (!result.error.empty()) status += ": " + result.error;
     const bool ran = result.status != TrialResult::Status::waiting;
     const std::string name = escape_markup(trial.name);
-    lines.push_back({ran ? fmt::format("<a href=\"trials/{0}/\">{0}</a>", name) : name, escape_markup(status),
-                     fmt::format("{:.1f}", result.wall), fmt::format("{}", result.calls),
-                     fmt::format("{}", result.loaded), "<small>" + what + "</small>"});
+    lines.push_back({text_cell(ran ? fmt::format("<a href=\"trials/{0}/\">{0}</a>", name) : name),
+                     text_cell(escape_markup(status)), number_cell(fmt::format("{:.1f}", result.wall)),
+                     number_cell(fmt::format("{}", result.calls)), number_cell(fmt::format("{}", result.loaded)),
+                     text_cell("<small>" + what + "</small>")});
   }
   return "<h2>Runs</h2>\n" + table("How each went, and what it did differently",
                                    {"run", "status", "seconds", "calls", "found", "differs in"}, lines);

@@ -19,6 +19,8 @@ table { border-collapse: collapse; margin: 1rem 0 2rem; }
 caption { text-align: left; font-weight: 600; padding-bottom: .3rem; }
 th, td { padding: .3rem .7rem; border-bottom: 1px solid #ddd; text-align: right; font-variant-numeric: tabular-nums; }
 th:first-child { text-align: left; }
+td { white-space: nowrap; }
+.text { text-align: left; white-space: normal; }
 tbody th { font-weight: normal; }
 tbody tr:hover { background: #f4f4f4; }
 svg { max-width: 100%; height: auto; }
