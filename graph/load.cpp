@@ -16,6 +16,12 @@ const std::vector<std::string> graph_keys = {"$schema", "description", "paramete
                                              "nodes",   "outputs",     "seed"};
 const std::vector<std::string> node_keys = {"type", "graph", "in", "params", "description"};
 
+std::vector<std::string> keys_of(const LocatedJson& json) {
+  std::vector<std::string> keys;
+  for (const auto& m : json.members) keys.push_back(m.key);
+  return keys;
+}
+
 std::vector<std::string> names_of(const std::map<std::string, LocatedJson>& parameters) {
   std::vector<std::string> names;
   for (const auto& [name, value] : parameters) names.push_back(name);
@@ -112,14 +118,63 @@ void merge(LocatedJson& base, const LocatedJson& patch, const std::string& at, D
     } else if (there) {
       std::erase_if(base.members, [&](const auto& old) { return old.key == m.key; });
     } else if (m.value.is(Kind::null)) {
-      std::vector<std::string> names;
-      for (const auto& old : base.members) names.push_back(old.key);
       diagnostics.error(m.key_place, fmt::format("null takes \"{}\" away, but the extended graph has none{}", name,
-                                                 did_you_mean(m.key, names)));
+                                                 did_you_mean(m.key, keys_of(base))));
     } else {
       base.members.push_back(m);
     }
   }
+}
+
+/// A change whose path is taken apart.
+struct Setting {
+  std::vector<std::string> path;
+  LocatedJson value;
+};
+
+std::vector<std::string> parts_of(const std::string& path) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= path.size();) {
+    const auto dot = std::min(path.find('.', at), path.size());
+    parts.push_back(path.substr(at, dot - at));
+    at = dot + 1;
+  }
+  return parts;
+}
+
+/// Whether a path names what null takes away: a node, a wire, an output.
+bool can_be_taken_away(const std::vector<std::string>& path) {
+  const bool named = path.size() == 2 && (path[0] == "nodes" || path[0] == "outputs");
+  return named || (path.size() == 4 && path[0] == "nodes" && path[2] == "in");
+}
+
+/// Changes a graph's text before anything is read from it. `where` names the graph in complaints: ` in "hear"`, or
+/// nothing.
+void apply(const Setting& setting, LocatedJson& graph, const std::string& where, Diagnostics& diagnostics) {
+  const auto& [path, value] = setting;
+  LocatedJson *at = &graph, *parent = nullptr;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (!at->is(Kind::object))
+      return diagnostics.error(value.place, fmt::format("nothing can be set below \"{}\"", path[i - 1]));
+    auto* member = at->find(path[i]);
+    const bool may_add = i + 1 == path.size() || path[i] == "params" || path[i] == "in";
+    if (!member && !may_add)
+      return diagnostics.error(value.place, fmt::format("there is no \"{}\"{} to set{}", path[i], where,
+                                                        did_you_mean(path[i], keys_of(*at))));
+    if (!member) {
+      LocatedJson empty;
+      empty.kind = Kind::object;
+      empty.place = value.place;
+      at->members.push_back({path[i], value.place, empty});
+      member = &at->members.back();
+    }
+    parent = at;
+    at = &member->value;
+  }
+  if (value.is(Kind::null) && can_be_taken_away(path))
+    std::erase_if(parent->members, [&](const LocatedJson::Member& m) { return m.key == path.back(); });
+  else
+    *at = value;
 }
 
 /// Opens graphs: substitutes parameters, makes functors, descends into graphs used as nodes.
@@ -149,6 +204,22 @@ class Loader {
     return base;
   }
 
+  /// Changes the root graph, or keeps the change until the graph is opened that holds its node.
+  void change(LocatedJson& root, const Change& change) {
+    auto path = parts_of(change.path);
+    // A parameter of the graph may be named alone.
+    if (path.size() == 1 && path[0] != "seed" && path[0] != "description") {
+      const auto* parameters = root.find("parameters");
+      if (!parameters || !parameters->value.find(path[0]))
+        return diagnostics_.error(
+            change.value.place,
+            fmt::format("the graph has no parameter \"{}\" to set{}", path[0],
+                        did_you_mean(path[0], parameters ? keys_of(parameters->value) : std::vector<std::string>{})));
+      path = {"parameters", path[0], "default"};
+    }
+    set_in(root, "", {std::move(path), change.value});
+  }
+
   void open_root(LocatedJson json, const LocatedJson* given = nullptr) {
     draft.root = std::make_unique<Scope>();
     draft.root->json = std::move(json);
@@ -160,9 +231,39 @@ class Loader {
         draft.seed = static_cast<std::uint64_t>(value);
     }
     add_graph_inputs();
+    if (!diagnostics_.ok()) return;
+    for (const auto& [node, settings] : inner_settings_)
+      diagnostics_.error(settings.front().value.place, fmt::format("\"{}\" is no graph any more to set in", node));
   }
 
  private:
+  /// "nodes.hear/speech/mel.params.filters" means the node "mel" of the graph that the node "speech" is, in that which
+  /// the node "hear" is.
+  void set_in(LocatedJson& graph, const std::string& prefix, Setting setting) {
+    const std::string where = prefix.empty() ? "" : fmt::format(" in \"{}\"", prefix.substr(0, prefix.size() - 1));
+    const auto* nodes = graph.find("nodes");
+    const auto slash = setting.path.size() > 1 ? setting.path[1].find('/') : std::string::npos;
+    if (setting.path[0] != "nodes" || slash == std::string::npos || !nodes || is_flat(nodes->value))
+      return apply(setting, graph, where, diagnostics_);
+    auto& name = setting.path[1];
+    const std::string outer = name.substr(0, slash);
+    const auto* node = nodes->value.find(outer);
+    if (!node)
+      return diagnostics_.error(setting.value.place, fmt::format("there is no \"{}\"{} to set{}", outer, where,
+                                                                 did_you_mean(outer, keys_of(nodes->value))));
+    if (!node->value.find("graph"))
+      return diagnostics_.error(setting.value.place, fmt::format("\"{}\" is a node, not a graph with a node \"{}\"",
+                                                                 prefix + outer, name.substr(slash + 1)));
+    name.erase(0, slash + 1);
+    inner_settings_[prefix + outer].push_back(std::move(setting));
+  }
+
+  /// Whether graphs used as nodes are spliced in already, as in a run folder or a model.
+  static bool is_flat(const LocatedJson& nodes) {
+    return std::any_of(nodes.members.begin(), nodes.members.end(),
+                       [](const auto& m) { return m.key.find('/') != std::string::npos; });
+  }
+
   void open(Scope& scope, const LocatedJson* given, const std::string& subject) {
     if (!expect_object(scope.json, subject, diagnostics_)) return;
     check_keys(scope.json, graph_keys, subject, diagnostics_);
@@ -279,6 +380,8 @@ class Loader {
     inner.prefix = scope.prefix + member.key + "/";
     inner.parent = &scope;
     inner.json = *std::move(json);
+    if (auto settings = inner_settings_.extract(scope.prefix + member.key))
+      for (auto& setting : settings.mapped()) set_in(inner.json, inner.prefix, std::move(setting));
     const auto* in = entry.json.find("in");
     inner.in = in ? &in->value : nullptr;
     const auto* params = entry.json.find("params");
@@ -324,6 +427,7 @@ class Loader {
   const Registry& registry_;
   Diagnostics& diagnostics_;
   std::vector<std::string> open_stack_;
+  std::map<std::string, std::vector<Setting>> inner_settings_;  ///< by the node that is the graph they change
 };
 
 /// Stands for the inputs of a graph that is looked at, not run.
@@ -360,12 +464,6 @@ void Loader::add_graph_inputs() {
   }
 }
 
-/// Whether a path names what null takes away: a node, a wire, an output.
-bool can_be_taken_away(const std::vector<std::string>& path) {
-  const bool named = path.size() == 2 && (path[0] == "nodes" || path[0] == "outputs");
-  return named || (path.size() == 4 && path[0] == "nodes" && path[2] == "in");
-}
-
 /// "path=value", as given to --set.
 std::optional<Change> parse_set(const std::string& set, Diagnostics& diagnostics) {
   const auto equals = set.find('=');
@@ -377,54 +475,6 @@ std::optional<Change> parse_set(const std::string& set, Diagnostics& diagnostics
   Json value = Json::parse(text, nullptr, false);
   if (value.is_discarded()) value = text;
   return Change{set.substr(0, equals), located(value, place)};
-}
-
-/// Applied to a graph's text before anything is read from it.
-void apply(const Change& change, LocatedJson& json, Diagnostics& diagnostics) {
-  const std::string& path = change.path;
-  const Place& place = change.value.place;
-  std::vector<std::string> parts;
-  for (std::size_t at = 0; at <= path.size();) {
-    const auto dot = std::min(path.find('.', at), path.size());
-    parts.push_back(path.substr(at, dot - at));
-    at = dot + 1;
-  }
-  // A parameter of the graph may be named alone.
-  const auto* parameters = json.find("parameters");
-  if (parts.size() == 1 && parts[0] != "seed" && parts[0] != "description") {
-    std::vector<std::string> known;
-    for (const auto& m : members_of(json, "parameters")) known.push_back(m.key);
-    if (!parameters || !parameters->value.find(parts[0]))
-      return diagnostics.error(
-          place, fmt::format("the graph has no parameter \"{}\" to set{}", parts[0], did_you_mean(parts[0], known)));
-    parts = {"parameters", parts[0], "default"};
-  }
-  LocatedJson *at = &json, *parent = nullptr;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (!at->is(Kind::object))
-      return diagnostics.error(place, fmt::format("nothing can be set below \"{}\"", parts[i - 1]));
-    auto* member = at->find(parts[i]);
-    const bool may_add = i + 1 == parts.size() || parts[i] == "params" || parts[i] == "in";
-    if (!member && !may_add) {
-      std::vector<std::string> known;
-      for (const auto& m : at->members) known.push_back(m.key);
-      return diagnostics.error(place,
-                               fmt::format("there is no \"{}\" to set{}", parts[i], did_you_mean(parts[i], known)));
-    }
-    if (!member) {
-      LocatedJson empty;
-      empty.kind = Kind::object;
-      empty.place = place;
-      at->members.push_back({parts[i], place, empty});
-      member = &at->members.back();
-    }
-    parent = at;
-    at = &member->value;
-  }
-  if (change.value.is(Kind::null) && can_be_taken_away(parts))
-    std::erase_if(parent->members, [&](const LocatedJson::Member& m) { return m.key == parts.back(); });
-  else
-    *at = change.value;
 }
 
 }  // namespace
@@ -482,8 +532,8 @@ std::optional<Graph> load_graph_text(const std::string& name, const std::string&
   auto json = loader.parse_graph(source);
   if (!json) return {};
   for (const auto& set : options.sets)
-    if (const auto change = detail::parse_set(set, diagnostics)) detail::apply(*change, *json, diagnostics);
-  for (const auto& change : options.changes) detail::apply(change, *json, diagnostics);
+    if (const auto change = detail::parse_set(set, diagnostics)) loader.change(*json, *change);
+  for (const auto& change : options.changes) loader.change(*json, change);
   loader.open_root(*std::move(json));
   auto graph = detail::connect(loader.draft, registry, diagnostics);
   if (graph) graph->name = name;

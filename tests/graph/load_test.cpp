@@ -122,6 +122,36 @@ TEST_F(Load, UsesAGraphAsANode) {
   EXPECT_EQ(resolved->resolved, graph->resolved);
 }
 
+TEST_F(Load, SetsWhatStandsInGraphsUsedAsNodes) {
+  write("inner.json", R"({ "parameters": { "k": { "default": 1 } },
+    "nodes": { "c": { "type": "toy.constant", "params": { "x": "${k}" } }, "d": { "type": "toy.constant" },
+               "s": { "type": "toy.add", "in": { "a": "c", "b": "d" } } }, "outputs": { "y": "s" } })");
+  write("outer.json", R"({ "nodes": { "in": { "graph": "inner.json" }, "again": { "graph": "inner.json" },
+    "s": { "type": "toy.add", "in": { "a": "in", "b": "again" } } }, "outputs": { "y": "s" } })");
+  const std::string text = R"({ "nodes": { "f": { "graph": "outer.json" } }, "outputs": { "y": "f" } })";
+  auto graph = load(text, {"nodes.f/in/c.params.x=7", "nodes.f/again.params.k=8", "nodes.f/in/s.in.b=null"});
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_EQ(graph->resolved["nodes"]["f/in/c"]["params"]["x"], 7);
+  EXPECT_EQ(graph->resolved["nodes"]["f/again/c"]["params"]["x"], 8);
+  EXPECT_FALSE(graph->resolved["nodes"].contains("f/in/d"));
+  // The same path counts where graphs are spliced in already.
+  Diagnostics flat;
+  const auto again =
+      load_graph_text("resolved.json", graph->resolved.dump(), registry, flat, {{"nodes.f/in/c.params.x=9"}});
+  ASSERT_TRUE(again) << flat.str();
+  EXPECT_EQ(again->resolved["nodes"]["f/in/c"]["params"]["x"], 9);
+
+  expect_error(text, "--set:1:1", "there is no \"g\" to set (did you mean \"f\"?)", {"nodes.g/in/c.params.x=7"});
+  expect_error(text, "--set:1:1", "there is no \"agian\" in \"f\" to set (did you mean \"again\"?)",
+               {"nodes.f/agian/c.params.x=7"});
+  expect_error(text, "--set:1:1", "there is no \"cc\" in \"f/in\" to set (did you mean \"c\"?)",
+               {"nodes.f/in/cc.params.x=7"});
+  expect_error(text, "--set:1:1", "\"f/s\" is a node, not a graph with a node \"c\"", {"nodes.f/s/c.params.x=7"});
+  expect_error(text, "--set:1:1", "did you mean \"x\"?", {"nodes.f/in/c.params.xx=7"});
+  expect_error(text, "--set:1:1", "\"f\" is no graph any more to set in",
+               {"nodes.f/in/c.params.x=7", R"(nodes.f={"type": "toy.constant"})"});
+}
+
 TEST_F(Load, ChecksAFragmentByItself) {
   const auto graph = load(R"({
     "inputs": { "x": "Number", "many": "Stream<Number>" },
