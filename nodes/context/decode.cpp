@@ -15,7 +15,9 @@ FrameLabels ContextDecode::operator()(const Vlmm& vlmm, const FrameLabels& label
 
 void describe(Description<ContextDecode>& d) {
   d.type("context.decode").summary("the context of each frame of a phone stream").source("Thesis §5.2.1, Figure 5.9");
-  d.input("vlmm").input("labels", "phones at the video rate").output("contexts");
+  d.input("vlmm", "the contexts")
+      .input("labels", "phones at the video rate")
+      .output("contexts", "phones joined by -, oldest first: k-ae-t");
 }
 
 }  // namespace talkgraph

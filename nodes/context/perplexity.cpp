@@ -34,7 +34,7 @@ Table ContextPerplexity::operator()(const Vlmm& vlmm, const Collected<FrameLabel
 void describe(Description<ContextPerplexity>& d) {
   d.type("context.perplexity").summary("how well the contexts predict other phone streams");
   d.source("Thesis §5.2.2, Eqns 5.25 and 5.26");
-  d.input("vlmm").input("labels", "phones at the video rate").output("table", "one row");
+  d.input("vlmm", "the contexts").input("labels", "phones at the video rate").output("table", "one row");
   d.param("floor", &ContextPerplexity::floor).within(1e-12, 1).doc("least probability of a phone");
 }
 

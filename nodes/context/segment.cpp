@@ -41,7 +41,9 @@ void describe(Description<ContextSegment>& d) {
   d.type("context.segment")
       .summary("cuts a stream of contexts into segments that do not overlap")
       .source("Thesis §5.2.1, Algorithm 4");
-  d.input("vlmm").input("contexts", "context of each frame").output("segments");
+  d.input("vlmm", "the contexts")
+      .input("contexts", "context of each frame")
+      .output("segments", "they cover every frame");
   d.param("states", &ContextSegment::states).doc("what a state stands for; as in context.windows");
 }
 

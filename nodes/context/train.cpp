@@ -160,7 +160,7 @@ void describe(Description<ContextTrain>& d) {
   d.type("context.train").version(1).stored();
   d.summary("learns phonetic contexts: a variable length Markov model of phones");
   d.source("Thesis §5.2.1, Algorithm 3");
-  d.input("labels", "phones at the video rate").output("vlmm");
+  d.input("labels", "phones at the video rate").output("vlmm", "the contexts");
   d.param("order", &ContextTrain::order).within(0, 50).unit("phones").doc("longest memory");
   d.param("prune", &ContextTrain::prune).within(0, 1).doc("strings in at most this share of the stream are pruned");
   d.param("keep", &ContextTrain::keep)

@@ -141,7 +141,11 @@ void describe(Description<ContextWindows>& d) {
   d.type("context.windows")
       .summary("the training windows of each state, one item a state")
       .source("Thesis §5.2.4, Algorithm 6");
-  d.input("vlmm").input("labels", "phones at the video rate").input("audio").input("visual").output("state");
+  d.input("vlmm", "the contexts")
+      .input("labels", "phones at the video rate")
+      .input("audio", "speech features at the video rate")
+      .input("visual", "visual parameters at that rate")
+      .output("state", "windows of audio and visual frames, by the state's label");
   d.param("states", &ContextWindows::states).doc("what a state stands for; as in context.segment");
   d.param("max_frames", &ContextWindows::max_frames)
       .at_least(1)

@@ -56,7 +56,7 @@ Stream<Recording> SoundFiles::operator()() const {
 
 void describe(Description<SoundFiles>& d) {
   d.type("corpus.files").summary("speech files without pictures");
-  d.output("recording");
+  d.output("recording", "one item a file, by its name");
   d.param("files", &SoundFiles::files).required().doc("sound files, or videos whose sound is taken");
   d.param("transcripts", &SoundFiles::transcripts).doc("what is said, one text a file; may be empty");
 }

@@ -107,7 +107,7 @@ Stream<Recording> Grid::operator()() const {
 
 void describe(Description<Grid>& d) {
   d.type("corpus.grid").summary("recordings of one speaker of the GRID corpus");
-  d.output("recording");
+  d.output("recording", "one item a clip");
   d.param("folder", &Grid::folder).required().doc("holds split.json, video/, align/ and landmarks/");
   d.param("limit", &Grid::limit).at_least(0).doc("clips of each split, 0 for all");
 }

@@ -94,7 +94,7 @@ Stream<Recording> Manifest::operator()() const {
 
 void describe(Description<Manifest>& d) {
   d.type("corpus.manifest").summary("any recordings, as a JSON file describes them");
-  d.output("recording");
+  d.output("recording", "one item a clip");
   d.param("file", &Manifest::file).required().doc("the manifest; docs/manifest.md says what stands in it");
 }
 

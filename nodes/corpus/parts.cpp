@@ -64,13 +64,13 @@ RecordingParts Parts::operator()(const Recording& recording, Context& context) c
 
 void describe(Description<Parts>& d) {
   d.type("corpus.parts").summary("takes a recording apart: sound, pictures, labels");
-  d.input("recording");
-  d.output("audio", &RecordingParts::audio);
-  d.output("video", &RecordingParts::video);
-  d.output("transcript", &RecordingParts::transcript);
-  d.output("words", &RecordingParts::words);
-  d.output("phones", &RecordingParts::phones);
-  d.output("landmarks", &RecordingParts::landmarks);
+  d.input("recording", "one utterance");
+  d.output("audio", &RecordingParts::audio, "its sound, one channel");
+  d.output("video", &RecordingParts::video, "its pictures");
+  d.output("transcript", &RecordingParts::transcript, "what is said");
+  d.output("words", &RecordingParts::words, "words with their times");
+  d.output("phones", &RecordingParts::phones, "phones with their times, where the corpus has them");
+  d.output("landmarks", &RecordingParts::landmarks, "points of every frame, where the corpus has them");
   d.output("visual", &RecordingParts::visual, "ready-made visual track");
   d.param("fps", &Parts::fps).unit("frames/s").doc("rate that pictures and visual tracks must have; 0: any");
   d.param("check", &Parts::check)

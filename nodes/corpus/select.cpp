@@ -11,7 +11,7 @@ std::optional<Recording> Select::operator()(const Recording& recording) const {
 
 void describe(Description<Select>& d) {
   d.type("corpus.select").summary("lets recordings of some splits pass");
-  d.input("recording").output("recording");
+  d.input("recording", "of any split").output("recording", "the same; nothing where it is of another split");
   d.param("splits", &Select::splits).doc("names of splits (\"train\", \"validation\", \"test\"); empty: all");
 }
 

@@ -33,7 +33,7 @@ Table Splits::operator()(const Collected<Recording>& recordings) const {
 
 void describe(Description<Splits>& d) {
   d.type("corpus.splits").summary("counts the recordings of each split; those to train on and to score must have some");
-  d.input("recordings").output("table");
+  d.input("recordings", "of all splits").output("table", "recordings of each split, a row each");
   d.param("train", &Splits::train).doc("splits to train on");
   d.param("evaluate", &Splits::evaluate).doc("split to score; empty: none");
 }

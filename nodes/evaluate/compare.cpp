@@ -22,7 +22,7 @@ Table Compare::operator()(const Collected<Table>& tables) const {
 
 void describe(Description<Compare>& d) {
   d.type("evaluate.compare").summary("one table of all methods");
-  d.input("tables", "an object of named tables").output("table");
+  d.input("tables", "an object of named tables").output("table", "a row for each of them");
   d.param("title", &Compare::title).doc("heading of the table");
   d.param("corner", &Compare::corner).doc("heading of the row names");
 }

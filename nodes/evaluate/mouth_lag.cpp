@@ -50,7 +50,10 @@ std::optional<Scores> MouthLag::operator()(const LandmarkTrack& landmarks, const
 
 void describe(Description<MouthLag>& d) {
   d.type("evaluate.mouth_lag").summary("lag between the opening of the mouth and the sound");
-  d.input("landmarks").input("audio").output("scores");
+  d.input("landmarks", "of the face, recorded or synthesised")
+      .input("audio", "the speech")
+      .output("scores",
+              "lag (frames; above 0: the mouth is late), correlation at that lag, in_time (correlation without a lag)");
   d.param("max_lag", &MouthLag::max_lag).within(0, 100).unit("frames").doc("longest shift tried");
   d.param("upper", &MouthLag::upper).at_least(0).doc("point in the middle of the inner upper lip");
   d.param("lower", &MouthLag::lower).at_least(0).doc("point in the middle of the inner lower lip");

@@ -56,7 +56,9 @@ std::optional<Scores> MouthOpening::operator()(const LandmarkTrack& landmarks, c
 
 void describe(Description<MouthOpening>& d) {
   d.type("evaluate.mouth_opening").summary("how far the lips part on closed phones, open phones and in pauses");
-  d.input("landmarks").input("labels").output("scores");
+  d.input("landmarks", "of the face, recorded or synthesised")
+      .input("labels", "phone of every frame")
+      .output("scores", "closed, open, pause: gap between the lips as a share of the mouth's width");
   d.param("closed", &MouthOpening::closed).doc("phones on which the lips meet");
   d.param("open", &MouthOpening::open).doc("phones on which the mouth opens");
   d.param("upper", &MouthOpening::upper).at_least(0).doc("point in the middle of the inner upper lip");

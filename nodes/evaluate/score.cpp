@@ -62,7 +62,10 @@ std::optional<Scores> Score::operator()(const Track& truth, const Track& predict
 
 void describe(Description<Score>& d) {
   d.type("evaluate.score").summary("AMSE, ACC and other scores of one sequence").source("Thesis §6.2, Eqns 6.5 to 6.9");
-  d.input("truth", "normalised").input("predicted", "normalised").input("speech", "frames that count").output("scores");
+  d.input("truth", "normalised")
+      .input("predicted", "normalised")
+      .input("speech", "frames that count")
+      .output("scores", "amse, amse_share, acc, l1, l2, linf, range");
 }
 
 }  // namespace talkgraph

@@ -26,7 +26,9 @@ std::optional<Scores> Seams::operator()(const Track& track, const SegmentTrack& 
 
 void describe(Description<Seams>& d) {
   d.type("evaluate.seams").summary("whether a track jumps where its segments meet");
-  d.input("track").input("segments").output("scores");
+  d.input("track", "visual parameters")
+      .input("segments", "of that track")
+      .output("scores", "step: mean step where segments meet, as a share of the mean step inside them");
 }
 
 }  // namespace talkgraph

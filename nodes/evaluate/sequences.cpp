@@ -19,7 +19,7 @@ Table SequenceTable::operator()(const Collected<Scores>& all) const {
 
 void describe(Description<SequenceTable>& d) {
   d.type("evaluate.sequences").summary("the scores of each sequence as a table").source("Thesis §6.2");
-  d.input("scores").output("table", "one row a sequence");
+  d.input("scores", "of each sequence").output("table", "one row a sequence");
   d.param("scores", &SequenceTable::scores).doc("which, in the order of the columns");
   d.param("title", &SequenceTable::title).doc("heading of the table");
 }

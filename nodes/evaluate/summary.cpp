@@ -29,7 +29,7 @@ Table Summary::operator()(const Collected<Scores>& all) const {
 
 void describe(Description<Summary>& d) {
   d.type("evaluate.summary").summary("mean and standard deviation of scores over sequences").source("Thesis §6.2");
-  d.input("scores").output("table", "one row");
+  d.input("scores", "of each sequence").output("table", "one row");
   d.param("scores", &Summary::scores).doc("which, in the order of the columns");
 }
 

@@ -18,7 +18,7 @@ void describe(Description<MakeBaseClip>& d) {
       .version(1)
       .summary("a tracked clip as the base to draw a face upon")
       .source("docs/method.md §2");
-  d.input("video").input("track").output("base");
+  d.input("video", "the clip").input("track", "of the clip").output("base", "the clip with the face found in it");
 }
 
 }  // namespace talkgraph

@@ -214,7 +214,7 @@ AppearanceModel BuildAppearance::operator()(const Prototypes& prototypes, Contex
 void describe(Description<BuildAppearance>& d) {
   d.type("face.build").version(1).summary("builds an active appearance model from pictures with landmarks");
   d.source("Thesis §3.1, §3.4, Eqns 3.11-3.21; docs/method.md §2").stored();
-  d.input("prototypes").output("model");
+  d.input("prototypes", "pictures with landmarks").output("model", "shape, texture and their combined modes");
   d.param("width", &BuildAppearance::width)
       .within(16, 1000)
       .unit("px")

@@ -38,7 +38,7 @@ void describe(Description<ChooseBase>& d) {
       .version(1)
       .summary("picks the clip to draw synthesised faces upon")
       .source("docs/method.md §2");
-  d.input("videos").input("tracks").output("base");
+  d.input("videos", "clips").input("tracks", "of the clips").output("base", "the clip with the face found in it");
   d.param("key", &ChooseBase::key).doc("of the clip; empty: the best tracked one");
 }
 

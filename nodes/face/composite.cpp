@@ -284,7 +284,10 @@ Video CompositeFace::operator()(const AppearanceModel& model, const Track& param
 void describe(Description<CompositeFace>& d) {
   d.type("face.composite").version(1).summary("draws a synthesised face on the frames of a real clip");
   d.source("Thesis §3.1.3, §6.3.5; docs/method.md §2");
-  d.input("model").input("parameters", "appearance parameters c").input("base").output("video");
+  d.input("model", "of the face")
+      .input("parameters", "appearance parameters c")
+      .input("base", "what is drawn upon; it runs forwards and backwards where it is too short")
+      .output("video", "as many frames as the parameters have");
   d.param("part", &CompositeFace::part)
       .doc("what the parameters rule: the lower face, or all of it with eyes and brows");
   d.param("blend_from", &CompositeFace::blend_from)

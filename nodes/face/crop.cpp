@@ -93,7 +93,9 @@ Video Crop::operator()(const Video& video, const LandmarkTrack& landmarks) const
 
 void describe(Description<Crop>& d) {
   d.type("face.crop").summary("cuts out of a video what holds some landmarks, such as the mouth");
-  d.input("video").input("landmarks").output("video");
+  d.input("video", "what is cut")
+      .input("landmarks", "points of every frame, in its pictures")
+      .output("video", "the cut, which follows nothing: one place in all frames");
   d.param("points", &Crop::points).at_least(0).doc("numbers of the points; empty: all");
   d.param("margin", &Crop::margin).within(0, 10).doc("added on each side, share of the longer side of their box");
 }

@@ -8,7 +8,7 @@ LandmarkTrack FaceLandmarks::operator()(const FaceTrack& track) const {
 
 void describe(Description<FaceLandmarks>& d) {
   d.type("face.landmarks").version(1).summary("the landmarks that tracking found").source("docs/method.md §2");
-  d.input("track").output("landmarks", "picture coordinates");
+  d.input("track", "of a clip").output("landmarks", "picture coordinates");
 }
 
 }  // namespace talkgraph

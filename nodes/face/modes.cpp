@@ -35,7 +35,7 @@ void describe(Description<FaceModes>& d) {
       .summary("the modes of variation of a face model, as a picture")
       .source("Thesis Appendix B")
       .sink();
-  d.input("model").output("picture");
+  d.input("model", "of the face").output("picture", "a PNG file");
   d.param("modes", &FaceModes::modes).at_least(1).doc("rows: the modes of the largest variance");
   d.param("deviations", &FaceModes::deviations).positive().doc("standard deviations shown each way");
   d.param("name", &FaceModes::name).doc("of the file below the run folder, without .png");

@@ -14,7 +14,7 @@ void describe(Description<FaceParameters>& d) {
       .version(1)
       .summary("the appearance parameters of a tracked clip")
       .source("docs/method.md §2");
-  d.input("track").output("parameters", "T × modes, first frame centred at half a frame");
+  d.input("track", "of a clip").output("parameters", "T × modes, first frame centred at half a frame");
 }
 
 }  // namespace talkgraph

@@ -100,7 +100,7 @@ void describe(Description<ChoosePrototypes>& d) {
   d.type("face.prototypes").version(1).summary("chooses frames of every phone at random to build a face model from");
   d.source("Thesis §3.4; docs/method.md §2").stored();
   d.input("videos", "clips").input("landmarks", "of the clips").input("labels", "phone of every frame");
-  d.output("prototypes");
+  d.output("prototypes", "pictures with their landmarks");
   d.param("per_phone", &ChoosePrototypes::per_phone)
       .at_least(1)
       .doc("frames chosen of every phone, fewer where it has fewer");

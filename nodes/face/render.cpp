@@ -88,7 +88,9 @@ Video RenderFace::operator()(const AppearanceModel& model, const Track& paramete
 void describe(Description<RenderFace>& d) {
   d.type("face.render").version(1).summary("the face of appearance parameters alone, on a plain background");
   d.source("Thesis Eqn 3.18; docs/method.md §2");
-  d.input("model").input("parameters").output("video");
+  d.input("model", "of the face")
+      .input("parameters", "appearance parameters c")
+      .output("video", "as many frames as the track has");
   d.param("zoom", &RenderFace::zoom).positive().doc("pixels per pixel of the mean shape");
   d.param("background", &RenderFace::background).within(0, 255).doc("grey level around the face");
 }

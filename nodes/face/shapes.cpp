@@ -25,7 +25,9 @@ void describe(Description<FaceShapes>& d) {
       .version(1)
       .summary("face shapes of appearance parameters, without head pose")
       .source("Thesis Eqn 3.18");
-  d.input("model").input("parameters").output("shapes", "model frame, pixels of the mean shape");
+  d.input("model", "of the face")
+      .input("parameters", "appearance parameters c")
+      .output("shapes", "model frame, pixels of the mean shape");
 }
 
 }  // namespace talkgraph

@@ -108,7 +108,9 @@ Video SideBySide::operator()(const Video& left, const Video& right) const {
 
 void describe(Description<SideBySide>& d) {
   d.type("face.side_by_side").version(1).summary("two videos beside each other, labelled");
-  d.input("left").input("right").output("video");
+  d.input("left", "shown on the left")
+      .input("right", "of the same rate, shown on the right")
+      .output("video", "as long as the shorter");
   d.param("left_label", &SideBySide::left_label).doc("text above the left picture");
   d.param("right_label", &SideBySide::right_label).doc("text above the right picture");
 }

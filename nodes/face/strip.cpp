@@ -68,7 +68,7 @@ void describe(Description<FrameStrip>& d) {
       .summary("frames of a clip with their phones, as one picture")
       .source("Thesis Appendix D")
       .sink();
-  d.input("video").input("labels", "phone of every frame").output("picture");
+  d.input("video", "of any size").input("labels", "phone of every frame").output("picture", "a PNG file");
   d.param("every", &FrameStrip::every).at_least(1).unit("frames").doc("shows one frame of so many");
   d.param("columns", &FrameStrip::columns).at_least(1).doc("pictures in a row");
   d.param("width", &FrameStrip::width).within(16, 4000).unit("px").doc("of one picture");

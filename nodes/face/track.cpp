@@ -148,7 +148,9 @@ FaceTrack TrackFace::operator()(const AppearanceModel& model, const Video& video
 void describe(Description<TrackFace>& d) {
   d.type("face.track").version(1).summary("follows the face through a clip with the model alone");
   d.source("Thesis §3.1.4, Algorithm 1; docs/method.md §2").stored();
-  d.input("model").input("video").output("track");
+  d.input("model", "of the face")
+      .input("video", "a clip of that speaker")
+      .output("track", "appearance parameters, pose and light of every frame, and which frames were lost");
   d.param("lost_above", &TrackFace::lost_above)
       .positive()
       .doc(

@@ -188,7 +188,8 @@ void describe(Description<TrainSgpdm>& d) {
   d.type("latent.sgpdm").version(1).stored();
   d.summary("trains the shared Gaussian process dynamical model of one state's audio and visual windows");
   d.source("Thesis §4.3.3-4.3.4, §5.1.2, Eqns 4.65-4.70, corrected as in docs/method.md §4");
-  d.input("windows", "training windows of one state").output("model");
+  d.input("windows", "training windows of one state")
+      .output("model", "audio and visual processes of one latent trajectory");
   d.param("latent_dimension", &TrainSgpdm::latent_dimension)
       .at_least(1)
       .doc("lowered to the smaller stream's dimension and to the number of frames less one");
@@ -196,7 +197,7 @@ void describe(Description<TrainSgpdm>& d) {
   d.param("inducing", &TrainSgpdm::inducing).at_least(1).doc("inducing points of each process");
   d.param("iterations", &TrainSgpdm::iterations).at_least(0).doc("limit of scaled conjugate gradients");
   d.param("initial", &TrainSgpdm::initial).doc("start values of the latent points");
-  d.param("audio_scaling", &TrainSgpdm::audio_scaling);
+  d.param("audio_scaling", &TrainSgpdm::audio_scaling).doc("as visual_scaling, of the audio frames");
   d.param("visual_scaling", &TrainSgpdm::visual_scaling)
       .doc("per_dimension gives every dimension the same weight; common keeps the ratios of their variances");
   d.param("dynamics", &TrainSgpdm::dynamics).doc("off: an SGPLVM");

@@ -58,7 +58,7 @@ void describe(Description<AssembleSsgpdm>& d) {
   d.type("mapping.ssgpdm").version(1);
   d.summary("puts the trained SGPDMs of all states together into one switching model");
   d.source("Thesis §5.1");
-  d.input("states", "one trained SGPDM a state").output("model");
+  d.input("states", "one trained SGPDM a state").output("model", "the switching model");
 }
 
 }  // namespace talkgraph

@@ -180,7 +180,9 @@ void describe(Description<SynthesiseSsgpdm>& d) {
   d.type("mapping.ssgpdm_synthesise").version(1);
   d.summary("visual features of new speech by a switching SGPDM").stored();
   d.source("Thesis §4.4, §5.3, Eqns 4.76-4.79, Algorithms 7 and 8, corrected as in docs/method.md §5");
-  d.input("model").input("audio", "speech features at the video rate").input("segments", "states of the speech");
+  d.input("model", "the switching model")
+      .input("audio", "speech features at the video rate")
+      .input("segments", "states of the speech");
   d.output("visual", &SynthesiseSsgpdm::Out::visual, "mean of the visual process");
   d.output("deviation", &SynthesiseSsgpdm::Out::deviation, "predictive standard deviation of every value");
   d.param("method", &SynthesiseSsgpdm::method)

@@ -77,7 +77,7 @@ Video CheckVideo::operator()(const Video& video, Context& context) const {
 
 void describe(Description<CheckVideo>& d) {
   d.type("media.check_video").summary("marks damaged frames, which are then not learnt from");
-  d.input("video").output("video");
+  d.input("video", "read through once").output("video", "the same, with its damaged frames marked");
   d.param("level", &CheckVideo::level)
       .within(1, 255)
       .doc("difference from the median picture that counts, grey levels");

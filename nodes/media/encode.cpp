@@ -50,7 +50,9 @@ Artifact Encode::operator()(const Video& video, const Audio* audio, Context& con
 
 void describe(Description<Encode>& d) {
   d.type("media.encode").summary("writes a clip: pictures, and sound of the same length").sink();
-  d.input("video").input("audio", "padded with silence or cut to the length of the picture").output("file");
+  d.input("video", "the pictures")
+      .input("audio", "padded with silence or cut to the length of the picture")
+      .output("file", "the clip");
   d.param("folder", &Encode::folder).doc("below the run folder");
   d.param("prefix", &Encode::prefix).doc("in front of the item's name");
   d.param("suffix", &Encode::suffix).doc("behind the item's name");

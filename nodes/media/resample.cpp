@@ -8,7 +8,7 @@ Audio Resample::operator()(const Audio& audio) const { return resampled(audio, r
 
 void describe(Description<Resample>& d) {
   d.type("media.resample").summary("converts sound to another sample rate");
-  d.input("audio").output("audio");
+  d.input("audio", "at any rate").output("audio", "at the new rate, of the same length");
   d.param("rate", &Resample::rate).within(1000, 384000).unit("Hz").doc("samples per second");
 }
 

@@ -14,7 +14,7 @@ Video OpenVideo::operator()() const {
 
 void describe(Description<OpenVideo>& d) {
   d.type("media.video").summary("opens a video file, a still picture or a folder of pictures");
-  d.output("video");
+  d.output("video", "opened when its frames are asked for");
   d.param("file", &OpenVideo::file).required().doc("video, PNG or JPEG picture, or folder of pictures");
   d.param("rate", &OpenVideo::rate).positive().unit("frames/s").doc("of a picture or a folder; a video says its own");
 }

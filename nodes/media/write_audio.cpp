@@ -15,7 +15,7 @@ Artifact WriteAudio::operator()(const Audio& audio, Context& context) const {
 
 void describe(Description<WriteAudio>& d) {
   d.type("media.write_audio").summary("writes sound as a WAV file").sink();
-  d.input("audio").output("file");
+  d.input("audio", "what is written").output("file", "the WAV file");
   d.param("folder", &WriteAudio::folder).doc("below the run folder");
   d.param("prefix", &WriteAudio::prefix).doc("in front of the item's name");
   d.param("suffix", &WriteAudio::suffix).doc("behind the item's name");

@@ -8,8 +8,11 @@ TalkingFace LoadModel::operator()() const { return load_model(file.path); }
 
 void describe(Description<LoadModel>& d) {
   d.type("model.load").summary("reads a trained talking face");
-  d.output("face", &TalkingFace::face).output("base", &TalkingFace::base).output("contexts", &TalkingFace::contexts);
-  d.output("states", &TalkingFace::states).output("mean", &TalkingFace::mean);
+  d.output("face", &TalkingFace::face, "the face model")
+      .output("base", &TalkingFace::base, "what synthesised faces are drawn upon")
+      .output("contexts", &TalkingFace::contexts, "phonetic contexts");
+  d.output("states", &TalkingFace::states, "the switching model")
+      .output("mean", &TalkingFace::mean, "mean visual parameters, 1 x D");
   d.param("file", &LoadModel::file).doc("model file written by model.save");
 }
 

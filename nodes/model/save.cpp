@@ -23,8 +23,12 @@ Artifact SaveModel::operator()(const AppearanceModel& face, const BaseClip& base
 
 void describe(Description<SaveModel>& d) {
   d.type("model.save").summary("writes a talking face, with the graph that speaks with it, to one HDF5 file").sink();
-  d.input("face").input("base").input("contexts").input("states").input("mean", "mean visual parameters, 1 x D");
-  d.output("file");
+  d.input("face", "the face model")
+      .input("base", "what synthesised faces are drawn upon")
+      .input("contexts", "phonetic contexts")
+      .input("states", "the switching model")
+      .input("mean", "mean visual parameters, 1 x D");
+  d.output("file", "the model file");
   d.param("name", &SaveModel::name).doc("file below the run folder");
   d.param("speak", &SaveModel::speak).doc("graph that speaks with the model; kept in the file, resolved");
 }

@@ -23,8 +23,9 @@ MeanCenter::Out MeanCenter::operator()(const Track& track) const {
 
 void describe(Description<MeanCenter>& d) {
   d.type("normalise.mean_center").summary("takes each sequence's mean off").source("Thesis §3.4, Eqn 3.36");
-  d.input("track");
-  d.output("centred", &MeanCenter::Out::centred).output("mean", &MeanCenter::Out::mean, "1 x D");
+  d.input("track", "one sequence");
+  d.output("centred", &MeanCenter::Out::centred, "the track less its mean")
+      .output("mean", &MeanCenter::Out::mean, "1 x D");
 }
 
 }  // namespace talkgraph

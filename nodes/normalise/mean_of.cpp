@@ -24,7 +24,7 @@ Track MeanOf::operator()(const Collected<Track>& tracks) const {
 
 void describe(Description<MeanOf>& d) {
   d.type("normalise.mean_of").summary("mean row of all tracks");
-  d.input("tracks").output("mean", "1 x D");
+  d.input("tracks", "rows of equal length").output("mean", "1 x D");
 }
 
 }  // namespace talkgraph

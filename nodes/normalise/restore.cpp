@@ -15,7 +15,7 @@ Track Restore::operator()(const Track& centred, const Track& mean) const {
 
 void describe(Description<Restore>& d) {
   d.type("normalise.restore").summary("puts a mean back on a centred track").source("Thesis §3.4, Eqn 3.36");
-  d.input("centred").input("mean", "1 x D").output("track");
+  d.input("centred", "track without its mean").input("mean", "1 x D").output("track", "the two added");
 }
 
 }  // namespace talkgraph

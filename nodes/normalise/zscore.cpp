@@ -37,12 +37,14 @@ Track ZscoreApply::operator()(const Track& track, const Track& statistics) const
 
 void describe(Description<ZscoreLearn>& d) {
   d.type("normalise.zscore_learn").summary("mean and standard deviation of each dimension");
-  d.input("tracks").output("statistics", "2 x D: mean, standard deviation");
+  d.input("tracks", "to learn from").output("statistics", "2 x D: mean, standard deviation");
 }
 
 void describe(Description<ZscoreApply>& d) {
   d.type("normalise.zscore_apply").summary("brings each dimension to mean 0 and deviation 1");
-  d.input("track").input("statistics", "of normalise.zscore_learn").output("track");
+  d.input("track", "rows of that length")
+      .input("statistics", "of normalise.zscore_learn")
+      .output("track", "the same, scaled");
 }
 
 }  // namespace talkgraph

@@ -125,7 +125,7 @@ std::optional<PhoneTrack> Align::operator()(const Audio& audio, const Transcript
 void describe(Description<Align>& d) {
   d.type("phones.align").summary("times of the phones of known words, by forced alignment").stored();
   d.source("PocketSphinx 0.8+5prealpha with its en-us model");
-  d.input("audio").input("transcript", "what is said").input("words", "instead of a transcript");
+  d.input("audio", "the speech").input("transcript", "what is said").input("words", "instead of a transcript");
   d.input("given", "phones from the corpus, passed on");
   d.output("phones", "nothing where neither words nor phones are known");
   d.param("mismatch", &Align::mismatch)

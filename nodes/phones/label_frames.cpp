@@ -46,7 +46,9 @@ FrameLabels LabelFrames::operator()(const PhoneTrack& phones, const Track& like)
 
 void describe(Description<LabelFrames>& d) {
   d.type("phones.label_frames").summary("one phone a frame, by majority of its time").source("Thesis §3.2");
-  d.input("phones").input("like", "the track whose frames are labelled").output("labels");
+  d.input("phones", "with their times")
+      .input("like", "the track whose frames are labelled")
+      .output("labels", "as many as the track has frames");
 }
 
 }  // namespace talkgraph

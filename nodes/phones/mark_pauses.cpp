@@ -19,7 +19,7 @@ FrameLabels MarkPauses::operator()(const FrameLabels& labels) const {
 void describe(Description<MarkPauses>& d) {
   d.type("phones.mark_pauses").summary("pauses before and after an utterance get labels of their own");
   d.source("Thesis §5.4.4");
-  d.input("labels", "phones at the video rate").output("labels");
+  d.input("labels", "phones at the video rate").output("labels", "pauses at both ends renamed");
 }
 
 }  // namespace talkgraph

@@ -51,13 +51,17 @@ Mask WordMask::operator()(const WordTrack& words, const Track& like) const {
 
 void describe(Description<SpeechMask>& d) {
   d.type("phones.speech_mask").summary("marks the frames whose centre lies in speech");
-  d.input("phones").input("like", "the track whose frames are marked").output("mask");
+  d.input("phones", "with their times")
+      .input("like", "the track whose frames are marked")
+      .output("mask", "1 in speech, 0 elsewhere");
   d.param("pauses", &SpeechMask::pauses).at_least(0).unit("s").doc(std::string(kPauses));
 }
 
 void describe(Description<WordMask>& d) {
   d.type("phones.word_mask").summary("marks the frames whose centre lies in a word");
-  d.input("words").input("like", "the track whose frames are marked").output("mask");
+  d.input("words", "with their times")
+      .input("like", "the track whose frames are marked")
+      .output("mask", "1 in words, 0 elsewhere");
   d.param("pauses", &WordMask::pauses).at_least(0).unit("s").doc(std::string(kPauses));
 }
 

@@ -27,8 +27,8 @@ void describe(Description<Recognise>& d) {
       .summary("phones of speech whose words are not known; about four in ten are wrong")
       .stored();
   d.source("PocketSphinx 0.8+5prealpha with its en-us model");
-  d.input("audio").input("known", "phones that are known already, passed on");
-  d.output("phones");
+  d.input("audio", "the speech").input("known", "phones that are known already, passed on");
+  d.output("phones", "with their times");
 }
 
 }  // namespace talkgraph

@@ -21,7 +21,7 @@ PhoneTrack ToVisemes::operator()(const PhoneTrack& phones) const {
 
 void describe(Description<ToVisemes>& d) {
   d.type("phones.to_visemes").summary("phones as MPEG-4 visemes, 1 to 14").source("Thesis Table 2.1");
-  d.input("phones").output("visemes");
+  d.input("phones", "with their times").output("visemes", "the same times; labels are numbers, or sil");
 }
 
 }  // namespace talkgraph

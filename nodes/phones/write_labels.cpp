@@ -21,8 +21,10 @@ Artifact WriteLabels::operator()(const PhoneTrack& phones, const WordTrack* word
 
 void describe(Description<WriteLabels>& d) {
   d.type("phones.write_labels").summary("writes phones as HTK labels, Praat TextGrid or CSV").sink();
-  d.input("phones").input("words", "a second tier of the TextGrid").output("file");
-  d.param("format", &WriteLabels::format);
+  d.input("phones", "with their times")
+      .input("words", "a second tier of the TextGrid")
+      .output("file", "the label file");
+  d.param("format", &WriteLabels::format).doc("htk: .lab, 100 ns; textgrid: Praat; csv: seconds");
   d.param("folder", &WriteLabels::folder).doc("below the run folder");
 }
 

@@ -45,8 +45,8 @@ Artifact WriteVisemes::operator()(const PhoneTrack& phones, Context& context) co
 
 void describe(Description<WriteVisemes>& d) {
   d.type("phones.write_visemes").summary("writes mouth shapes in the formats of Rhubarb Lip Sync").sink();
-  d.input("phones").output("file");
-  d.param("format", &WriteVisemes::format);
+  d.input("phones", "with their times").output("file", "the viseme file");
+  d.param("format", &WriteVisemes::format).doc("as rhubarb writes them with -f tsv or -f json");
   d.param("folder", &WriteVisemes::folder).doc("below the run folder");
 }
 

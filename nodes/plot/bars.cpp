@@ -39,7 +39,7 @@ Plot PlotBars::operator()(const Table& table) const {
 
 void describe(Description<PlotBars>& d) {
   d.type("plot.bars").summary("columns of a table as bars, with whiskers of one standard deviation");
-  d.input("table").output("plot");
+  d.input("table", "as evaluate.compare gives it").output("plot", "a panel a column");
   d.param("columns", &PlotBars::columns).doc("which, a panel each");
 }
 

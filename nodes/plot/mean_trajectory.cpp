@@ -85,11 +85,14 @@ Plot MeanTrajectory::operator()(const Collected<Track>& truth, const Collected<T
 
 void describe(Description<MeanTrajectory>& d) {
   d.type("plot.mean_trajectory").summary("mean trajectories through phones, truth against prediction");
-  d.input("truth").input("predicted").input("labels", "phones at the video rate").output("plot");
+  d.input("truth", "recorded sequences")
+      .input("predicted", "synthesised ones, by the same keys")
+      .input("labels", "phones at the video rate")
+      .output("plot", "a panel a phone");
   d.param("dimension", &MeanTrajectory::dimension).at_least(0).doc("of the tracks, from 0");
   d.param("phones", &MeanTrajectory::phones).within(1, 60).doc("most frequent phones shown");
   d.param("margin", &MeanTrajectory::margin).within(0, 50).unit("frames").doc("before and after each phone");
-  d.param("title", &MeanTrajectory::title);
+  d.param("title", &MeanTrajectory::title).doc("heading");
 }
 
 }  // namespace talkgraph

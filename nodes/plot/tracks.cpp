@@ -33,7 +33,7 @@ Plot PlotTracks::operator()(const Track& truth, const Track& predicted, Context&
 
 void describe(Description<PlotTracks>& d) {
   d.type("plot.tracks").summary("the first dimensions of two tracks over time");
-  d.input("truth").input("predicted").output("plot");
+  d.input("truth", "recorded").input("predicted", "synthesised").output("plot", "a panel a dimension");
   d.param("dimensions", &PlotTracks::dimensions).within(1, 30).doc("how many are shown");
 }
 

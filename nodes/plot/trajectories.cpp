@@ -30,9 +30,11 @@ Plot PlotTrajectories::operator()(const Collected<Track>& truth, const Collected
 void describe(Description<PlotTrajectories>& d) {
   d.type("plot.trajectories").summary("tracks averaged over their dimensions, truth against prediction over time");
   d.source("Thesis §6.2.3, Eqns 6.10 and 6.11, Figures 6.1 to 6.4");
-  d.input("truth").input("predicted").output("plot");
+  d.input("truth", "recorded sequences")
+      .input("predicted", "synthesised ones, by the same keys")
+      .output("plot", "a panel a sequence");
   d.param("sequences", &PlotTrajectories::sequences).within(1, 30).doc("how many are shown, from the first");
-  d.param("title", &PlotTrajectories::title);
+  d.param("title", &PlotTrajectories::title).doc("heading");
 }
 
 }  // namespace talkgraph

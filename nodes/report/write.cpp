@@ -33,7 +33,7 @@ void describe(Description<WriteReport>& d) {
   d.input("tables", "an object of named tables")
       .input("plots", "an object of named plots")
       .input("clips", "a stream of clips");
-  d.output("file");
+  d.output("file", "report.html");
   d.param("title", &WriteReport::title).doc("heading of the page");
   d.param("notes", &WriteReport::notes).doc("a paragraph under the heading");
 }

@@ -18,7 +18,7 @@ Artifact WritePlot::operator()(const Plot& plot, Context& context) const {
 
 void describe(Description<WritePlot>& d) {
   d.type("report.write_plot").summary("writes a plot as an SVG file").sink();
-  d.input("plot").output("file");
+  d.input("plot", "what is written").output("file", "the SVG file");
   d.param("name", &WritePlot::name).doc("file name without its ending; of the item if empty");
   d.param("folder", &WritePlot::folder).doc("below the run folder");
 }

@@ -13,7 +13,7 @@ Artifact WriteTable::operator()(const Table& table, Context& context) const {
 
 void describe(Description<WriteTable>& d) {
   d.type("report.write_table").summary("writes a table as CSV and JSON").sink();
-  d.input("table").output("file");
+  d.input("table", "what is written").output("file", "the CSV file; the JSON file lies beside it");
   d.param("name", &WriteTable::name).doc("file name without its ending");
 }
 

@@ -16,7 +16,9 @@ Artifact WriteTrack::operator()(const Track& track, const Track* named, Context&
 
 void describe(Description<WriteTrack>& d) {
   d.type("report.write_track").summary("writes a track as CSV, a line a frame").sink();
-  d.input("track").input("named", "a track that names the dimensions").output("file");
+  d.input("track", "what is written")
+      .input("named", "a track that names the dimensions")
+      .output("file", "the CSV file");
   d.param("folder", &WriteTrack::folder).doc("below the run folder");
 }
 

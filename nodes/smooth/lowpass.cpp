@@ -59,7 +59,7 @@ Track Lowpass::operator()(const Track& track) const {
 
 void describe(Description<Lowpass>& d) {
   d.type("smooth.lowpass").summary("zero-phase Butterworth low-pass").source("Thesis §5.3");
-  d.input("track").output("track");
+  d.input("track", "at any rate").output("track", "of the same size");
   d.param("cutoff", &Lowpass::cutoff).positive().unit("Hz").doc("gain ½ here; at or above half the rate: off");
 }
 

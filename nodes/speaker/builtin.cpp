@@ -172,7 +172,7 @@ Stream<Recording> BuiltinSpeaker::operator()() const {
 
 void describe(Description<BuiltinSpeaker>& d) {
   d.type("speaker.builtin").version(1).summary("a synthetic speaker: sound, pictures, phones, words and landmarks");
-  d.output("recording");
+  d.output("recording", "one item a sentence");
   d.param("sentences", &BuiltinSpeaker::sentences)
       .within(1, static_cast<double>(speaker_sentence_count()))
       .doc("how many sentences are said");

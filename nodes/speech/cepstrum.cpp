@@ -29,7 +29,7 @@ Track Cepstrum::operator()(const Track& track) const {
 
 void describe(Description<Cepstrum>& d) {
   d.type("speech.cepstrum").summary("DCT of log filter outputs: mel cepstrum").source("Thesis §3.2; HTK Book");
-  d.input("track", "log filter outputs").output("track");
+  d.input("track", "log filter outputs").output("track", "T x coefficients");
   d.param("coefficients", &Cepstrum::coefficients).within(2, 1000).doc("with the 0th");
   d.param("keep_zeroth", &Cepstrum::keep_zeroth).doc("keep the 0th coefficient");
   d.param("lifter", &Cepstrum::lifter).at_least(0).doc("HTK's liftering parameter; 0: none");

@@ -22,7 +22,7 @@ Track Deltas::operator()(const Track& track) const {
 
 void describe(Description<Deltas>& d) {
   d.type("speech.deltas").summary("slope of each dimension").source("HTK Book, delta coefficients");
-  d.input("track").output("track");
+  d.input("track", "T x D").output("track", "T x D, per frame");
   d.param("window", &Deltas::window).within(1, 100).unit("frames").doc("on each side");
 }
 

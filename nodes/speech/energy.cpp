@@ -13,7 +13,7 @@ Track Energy::operator()(const Frames& frames) const {
 
 void describe(Description<Energy>& d) {
   d.type("speech.energy").summary("log energy of each frame").source("HTK Book, energy measures");
-  d.input("frames").output("track");
+  d.input("frames", "without window and pre-emphasis, as HTK has it").output("track", "T x 1");
   d.param("scale", &Energy::scale).positive().doc("full scale of the samples: 32768 as 16-bit tools have it");
   d.param("floor", &Energy::floor).positive().doc("least energy before the log");
 }

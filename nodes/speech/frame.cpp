@@ -43,7 +43,7 @@ Frames Frame::operator()(const Audio& audio) const {
 
 void describe(Description<Frame>& d) {
   d.type("speech.frame").version(2).summary("cuts sound into overlapping frames").source("Thesis §3.2, §3.5.1");
-  d.input("audio").output("frames");
+  d.input("audio", "at any rate").output("frames", "T x samples");
   d.param("window", &Frame::window).positive().unit("s").doc("length of a frame");
   d.param("rate", &Frame::rate).positive().unit("1/s").doc("frames per second");
   d.param("centred", &Frame::centred)

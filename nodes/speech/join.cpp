@@ -28,7 +28,9 @@ Track Join::operator()(const Track& a, const Track& b) const {
 
 void describe(Description<Join>& d) {
   d.type("speech.join").summary("two tracks side by side");
-  d.input("a").input("b").output("track");
+  d.input("a", "the first dimensions")
+      .input("b", "of the same rate, the dimensions behind them")
+      .output("track", "both, as long as the shorter");
 }
 
 }  // namespace talkgraph

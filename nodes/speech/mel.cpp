@@ -40,7 +40,7 @@ void describe(Description<Mel>& d) {
   d.type("speech.mel")
       .summary("log mel filter bank, HTK convention")
       .source("Thesis §3.2; HTK Book, filter bank analysis");
-  d.input("spectrum").output("track");
+  d.input("spectrum", "of the frames").output("track", "T x filters");
   d.param("filters", &Mel::filters).within(1, 1000).doc("number of triangular filters");
   d.param("low", &Mel::low).at_least(0).unit("Hz").doc("lower edge of the first filter");
   d.param("high", &Mel::high).at_least(0).unit("Hz").doc("upper edge of the last filter; 0: Nyquist");

@@ -31,7 +31,7 @@ Track OneHot::operator()(const FrameLabels& labels) const {
 
 void describe(Description<OneHot>& d) {
   d.type("speech.one_hot").summary("phone labels as indicator columns");
-  d.input("labels").output("track");
+  d.input("labels", "phone of every frame").output("track", "T x alphabet, zeros and ones");
   d.param("alphabet", &OneHot::alphabet).doc("a column each; CMU phones, sil and breath by default");
 }
 

@@ -15,7 +15,7 @@ void describe(Description<PreEmphasis>& d) {
   d.type("speech.preemphasis")
       .summary("lifts high frequencies: x'[t] = x[t] - k x[t-1]")
       .source("Thesis §3.2, Eqn 3.22");
-  d.input("audio").output("audio");
+  d.input("audio", "at any rate").output("audio", "of the same rate and length");
   d.param("k", &PreEmphasis::k).within(0, 1).doc("strength; 0 switches it off");
 }
 

@@ -52,7 +52,7 @@ Spectrum ShortTimeSpectrum::operator()(const Frames& frames) const {
 
 void describe(Description<ShortTimeSpectrum>& d) {
   d.type("speech.spectrum").version(2).summary("magnitude or power spectrum of each frame").source("Thesis §3.2");
-  d.input("frames").output("spectrum");
+  d.input("frames", "T x samples").output("spectrum", "T x bins, from 0 to the Nyquist frequency");
   d.param("kind", &ShortTimeSpectrum::kind).doc("magnitude |DFT| (HTK's choice for MFCC) or power |DFT|²");
   d.param("size", &ShortTimeSpectrum::size).at_least(0).doc("points of the DFT; 0: the next power of two");
 }

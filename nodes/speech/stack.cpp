@@ -19,9 +19,9 @@ Track Stack::operator()(const Track& track) const {
 
 void describe(Description<Stack>& d) {
   d.type("speech.stack").summary("each frame with its neighbours");
-  d.input("track").output("track");
-  d.param("before", &Stack::before).within(0, 100).unit("frames");
-  d.param("after", &Stack::after).within(0, 100).unit("frames");
+  d.input("track", "T x D").output("track", "T x D (before + 1 + after)");
+  d.param("before", &Stack::before).within(0, 100).unit("frames").doc("neighbours in front");
+  d.param("after", &Stack::after).within(0, 100).unit("frames").doc("neighbours behind");
 }
 
 }  // namespace talkgraph

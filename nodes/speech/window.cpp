@@ -17,7 +17,7 @@ Frames Window::operator()(const Frames& frames) const {
 
 void describe(Description<Window>& d) {
   d.type("speech.window").summary("weighs each frame with a window").source("Thesis §3.2");
-  d.input("frames").output("frames");
+  d.input("frames", "T x samples").output("frames", "the same, weighed");
   d.param("shape", &Window::shape).doc("symmetric window");
 }
 

@@ -14,7 +14,7 @@ Track VideoFrames::operator()(const Audio& audio) const {
 
 void describe(Description<VideoFrames>& d) {
   d.type("sync.frames").summary("the frames of the video rate in a sound, without values");
-  d.input("audio").output("frames");
+  d.input("audio", "gives the length").output("frames", "T x 0");
   d.param("rate", &VideoFrames::rate).positive().unit("frames/s").doc("video rate");
 }
 

@@ -51,7 +51,7 @@ void describe(Description<MedianSync>& d) {
   d.type("sync.median")
       .summary("to the video rate by the median of the frames in each video frame")
       .source("Thesis §3.5.1");
-  d.input("track").input("audio", "gives the exact length").output("track");
+  d.input("track", "at a higher rate").input("audio", "gives the exact length").output("track", "at the video rate");
   d.param("rate", &MedianSync::rate).positive().unit("frames/s").doc("video rate");
 }
 

@@ -72,7 +72,7 @@ void describe(Description<Polyphase>& d) {
   d.type("sync.polyphase")
       .summary("to the video rate by anti-aliased resampling at the exact ratio")
       .source("Thesis §3.5.1");
-  d.input("track").input("audio", "gives the exact length").output("track");
+  d.input("track", "at any rate").input("audio", "gives the exact length").output("track", "at the video rate");
   d.param("rate", &Polyphase::rate).positive().unit("frames/s").doc("video rate");
   d.param("zeros", &Polyphase::zeros).within(1, 100).doc("zero crossings of the filter on each side");
   d.param("beta", &Polyphase::beta).within(0, 30).doc("of the Kaiser window: more suppresses aliases more");

@@ -37,7 +37,7 @@ Stream<Recording> SpokenRecordings::operator()() const {
 
 void describe(Description<SpokenRecordings>& d) {
   d.type("voice.recordings").version(1).summary("recordings of texts spoken by espeak-ng");
-  d.output("recording");
+  d.output("recording", "one item a text, with its transcript");
   d.param("texts", &SpokenRecordings::texts).required().doc("English texts, one recording each");
   d.param("voice", &SpokenRecordings::voice).doc("how they sound");
 }

@@ -33,12 +33,14 @@ Track MeanPredict::operator()(const MeanModel& model, const Track& audio) const 
 
 void describe(Description<MeanTrain>& d) {
   d.type("yardstick.mean_train").summary("the mean of all training frames");
-  d.input("visual").output("model");
+  d.input("visual", "visual parameters of the training sequences").output("model", "mean row");
 }
 
 void describe(Description<MeanPredict>& d) {
   d.type("yardstick.mean").summary("predicts the training mean for every frame");
-  d.input("model").input("audio").output("track");
+  d.input("model", "of yardstick.mean_train")
+      .input("audio", "speech features, whose frames are filled")
+      .output("track", "visual parameters");
 }
 
 }  // namespace talkgraph

@@ -38,13 +38,17 @@ Track NeighboursPredict::operator()(const NeighboursModel& model, const Track& a
 
 void describe(Description<NeighboursTrain>& d) {
   d.type("yardstick.neighbours_train").summary("keeps all training frames to look neighbours up in");
-  d.input("audio").input("visual").output("model");
+  d.input("audio", "speech features at the video rate of the training sequences")
+      .input("visual", "visual parameters of the training sequences")
+      .output("model", "the training frames");
   d.param("context", &NeighboursTrain::context).within(0, 50).unit("frames").doc("neighbours on each side");
 }
 
 void describe(Description<NeighboursPredict>& d) {
   d.type("yardstick.neighbours").summary("mean of the k training frames that sound most alike").stored();
-  d.input("model").input("audio").output("track");
+  d.input("model", "of yardstick.neighbours_train")
+      .input("audio", "speech features at the video rate")
+      .output("track", "visual parameters");
   d.param("k", &NeighboursPredict::k).at_least(1).doc("1 is the nearest neighbour");
 }
 

@@ -30,14 +30,18 @@ Track RidgePredict::operator()(const RidgeModel& model, const Track& audio) cons
 
 void describe(Description<RidgeTrain>& d) {
   d.type("yardstick.ridge_train").summary("learns ridge regression from sound to visual parameters").stored();
-  d.input("audio").input("visual").output("model");
+  d.input("audio", "speech features at the video rate of the training sequences")
+      .input("visual", "visual parameters of the training sequences")
+      .output("model", "weights");
   d.param("context", &RidgeTrain::context).within(0, 50).unit("frames").doc("neighbours on each side");
   d.param("lambda", &RidgeTrain::lambda).positive().doc("penalty, relative to the number of frames");
 }
 
 void describe(Description<RidgePredict>& d) {
   d.type("yardstick.ridge").summary("predicts visual parameters by ridge regression");
-  d.input("model").input("audio").output("track");
+  d.input("model", "of yardstick.ridge_train")
+      .input("audio", "speech features at the video rate")
+      .output("track", "visual parameters");
 }
 
 }  // namespace talkgraph
