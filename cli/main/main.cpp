@@ -7,10 +7,13 @@
 #include <opencv2/core.hpp>
 
 #include "cli/cache.h"
+#include "cli/example.h"
 #include "cli/experiment.h"
 #include "cli/look.h"
+#include "cli/reference.h"
 #include "cli/registry.h"
 #include "cli/run.h"
+#include "cli/samples.h"
 #include "cli/speak.h"
 #include "experiment/experiment.h"
 #include "graph/output_file.h"
@@ -72,6 +75,16 @@ int why(const std::string& file, const Registry& registry, const std::vector<std
   const Forecast forecast(*graph, cache);
   fmt::print(
       "{}", explain(*graph, forecast, last_snapshot(cache, *graph), node.empty() ? std::nullopt : std::optional(node)));
+  return success;
+}
+
+int show(const NodeType& type, const Registry& registry, bool only_example) {
+  fmt::print("{}", only_example ? graph_text(example_graph(registry, type)) : show_node(registry, type));
+  return success;
+}
+
+int write_reference(const Registry& registry, const std::filesystem::path& folder) {
+  for (const auto& [name, text] : reference_pages(registry)) write_file(folder / name, text);
   return success;
 }
 
@@ -177,6 +190,15 @@ int main(int argc, char** argv) {
 
   auto* node_app = app.add_subcommand("node", "show one node type: ports, parameters, an example");
   node_app->add_option("type", type, "such as speech.mel")->required();
+  bool only_example = false;
+  node_app->add_flag("--example", only_example, "only the example, to be run");
+
+  auto* samples_app = app.add_subcommand("samples", "write recordings and a model for the examples that read files");
+  samples_app->add_option("-o,--folder", run.folder, "folder (default samples)");
+  samples_app->add_flag("-q,--quiet", run.quiet, "no progress, only warnings and failures");
+
+  auto* reference_app = app.add_subcommand("reference", "write the reference of all node types in Markdown");
+  reference_app->add_option("-o,--folder", output, "folder")->required();
 
   std::string other;
   auto* diff_app = app.add_subcommand("diff", "what two graphs do differently");
@@ -217,7 +239,9 @@ int main(int argc, char** argv) {
       if (*diff_app) return diff(graph, other.empty() ? graph : other, registry, sets);
       if (*schema_app)
         return deliver((of_experiments ? experiment_schema() : json_schema(registry)).dump(1) + "\n", output), success;
-      if (*node_app) return fmt::print("{}", show_node(registry, type)), success;
+      if (*node_app) return show(known_type(registry, type), registry, only_example);
+      if (*samples_app) return write_samples(run, registry);
+      if (*reference_app) return write_reference(registry, output);
       return draw(graph, registry, sets, format, output);
     };
     const int code = command();

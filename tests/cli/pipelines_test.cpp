@@ -77,18 +77,5 @@ TEST(Pipelines, CanBeCompared) {
   EXPECT_EQ(diff_graphs(*a, *c), "  outputs/clips: \"face/encode.file\" -> nothing\n  seed: 1 -> 3\n");
 }
 
-TEST(Nodes, AllSayWhatTheyAreFor) {
-  const Registry registry = all_nodes();
-  for (const auto& name : registry.names()) {
-    const NodeType& type = *registry.find(name);
-    EXPECT_NE(name.find('.'), std::string::npos) << name;
-    EXPECT_FALSE(type.summary.empty()) << name;
-    EXPECT_NE(show_node(registry, name).find("example"), std::string::npos) << name;
-  }
-  EXPECT_NE(list_nodes(registry, "MEL").find("speech.mel"), std::string::npos);
-  EXPECT_THROW(list_nodes(registry, "zzz"), std::invalid_argument);
-  EXPECT_THROW(show_node(registry, "speech.mell"), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace talkgraph::cli

@@ -57,7 +57,9 @@ std::string instances(const std::vector<fs::path>& files) {
 }
 
 TEST_F(Schema, HoldsForEveryPipelineAndExperiment) {
-  EXPECT_EQ(complaints(instances(files_naming("talkgraph.schema.json"))), "");
+  EXPECT_EQ(
+      complaints(instances(files_naming("talkgraph.schema.json")) + " -i '" TALKGRAPH_SOURCE_DIR "/cli/examples.json'"),
+      "");
   const std::string schema = folder_.write("experiment.schema.json", experiment_schema().dump());
   EXPECT_EQ(complaints(instances(files_naming("talkgraph.experiment.schema.json")), schema), "");
 }
