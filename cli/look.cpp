@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "graph/differences.h"
 
 namespace talkgraph::cli {
@@ -21,6 +23,45 @@ void each_edge(const Graph& graph, Visit visit) {
   for (std::size_t i = 0; i < graph.nodes.size(); ++i)
     for (const auto& wire : graph.nodes[i].inputs)
       for (const auto& source : wire.sources) visit(source, i);
+}
+
+/// Nodes, and the graphs used as nodes that they stood in, by name, in order.
+struct Group {
+  std::vector<std::pair<std::string, std::size_t>> nodes;
+  std::vector<std::pair<std::string, Group>> groups;
+};
+
+/// Adds "hear/speech/mel" as "mel" in the group "speech" in the group "hear".
+void add_to(Group& group, const std::string& name, std::size_t node) {
+  const auto slash = name.find('/');
+  if (slash == std::string::npos) return group.nodes.emplace_back(name, node), void();
+  const std::string outer = name.substr(0, slash);
+  auto inner = std::find_if(group.groups.begin(), group.groups.end(), [&](const auto& g) { return g.first == outer; });
+  if (inner == group.groups.end()) inner = group.groups.insert(inner, {outer, {}});
+  add_to(inner->second, name.substr(slash + 1), node);
+}
+
+Group group(const Graph& graph) {
+  Group all;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) add_to(all, graph.nodes[i].name, i);
+  return all;
+}
+
+template <class Open, class Node, class Close>
+void each_part(const Group& group, const std::string& indent, const Open& open, const Node& node, const Close& close) {
+  for (const auto& [name, index] : group.nodes) node(index, name, indent);
+  for (const auto& [name, inner] : group.groups) {
+    open(name, indent);
+    each_part(inner, indent + "  ", open, node, close);
+    close(indent);
+  }
+}
+
+/// Text in quotes, its own quotes written in another way.
+std::string quoted(const std::string& text, const std::string& quote) {
+  std::string out;
+  for (const char c : text) out += c == '"' ? quote : c == '\n' ? "\\n" : std::string(1, c);
+  return '"' + out + '"';
 }
 
 }  // namespace
@@ -43,12 +84,27 @@ std::string diff_graphs(const Graph& a, const Graph& b) {
 
 std::string draw_dot(const Graph& graph) {
   std::string out =
-      "digraph {\n  rankdir=LR;\n  node [shape=box, style=\"rounded,filled\", fillcolor=\"#eef3f8\", "
-      "color=\"#5b7a99\", "
-      "fontname=\"Helvetica\"];\n  edge [fontname=\"Helvetica\", fontsize=10, color=\"#5b7a99\"];\n";
-  for (std::size_t i = 0; i < graph.nodes.size(); ++i)
-    out += fmt::format("  n{} [label=\"{}\\n{}\"{}];\n", i, graph.nodes[i].name, graph.nodes[i].type->name,
-                       graph.nodes[i].type->makes_stream ? ", fillcolor=\"#fdf3dc\"" : "");
+      "digraph {\n  rankdir=LR;\n  fontname=\"Helvetica\";\n"
+      "  label=\"thick: a stream of items; yellow: makes a stream; green: writes files\";\n"
+      "  node [shape=box, style=\"rounded,filled\", fillcolor=\"#eef3f8\", color=\"#5b7a99\", "
+      "fontname=\"Helvetica\"];\n"
+      "  edge [fontname=\"Helvetica\", fontsize=10, color=\"#5b7a99\"];\n";
+  const auto escaped = [](const std::string& text) { return quoted(text, "\\\""); };
+  int clusters = 0;
+  each_part(
+      group(graph), "  ",
+      [&](const std::string& name, const std::string& indent) {
+        out += fmt::format(
+            "{}subgraph cluster_{} {{\n{}  label={};\n{}  style=\"rounded,filled\"; color=\"#b8c6d4\"; "
+            "fillcolor=\"#5b7a9912\"; labeljust=l;\n",
+            indent, clusters++, indent, escaped(name), indent);
+      },
+      [&](std::size_t i, const std::string& name, const std::string& indent) {
+        const NodeType& type = *graph.nodes[i].type;
+        const char* fill = type.makes_stream ? ", fillcolor=\"#fdf3dc\"" : type.sink ? ", fillcolor=\"#e3f1e1\"" : "";
+        out += fmt::format("{}n{} [label={}{}];\n", indent, i, escaped(name + "\n" + type.name), fill);
+      },
+      [&](const std::string& indent) { out += indent + "}\n"; });
   each_edge(graph, [&](const Graph::Port& source, std::size_t to) {
     out += fmt::format("  n{} -> n{} [label=\"{}\"{}];\n", source.node, to, edge_type(graph, source),
                        is_stream(graph, source) ? ", penwidth=2.5" : "");
@@ -58,10 +114,19 @@ std::string draw_dot(const Graph& graph) {
 
 std::string draw_mermaid(const Graph& graph) {
   std::string out = "flowchart LR\n";
-  for (std::size_t i = 0; i < graph.nodes.size(); ++i)
-    out += fmt::format("  n{}[\"{}<br/><i>{}</i>\"]\n", i, graph.nodes[i].name, graph.nodes[i].type->name);
+  const auto escaped = [](const std::string& text) { return quoted(text, "#quot;"); };
+  int groups = 0;
+  each_part(
+      group(graph), "  ",
+      [&](const std::string& name, const std::string& indent) {
+        out += fmt::format("{}subgraph g{}[{}]\n", indent, groups++, escaped(name));
+      },
+      [&](std::size_t i, const std::string& name, const std::string& indent) {
+        out += fmt::format("{}n{}[{}]\n", indent, i, escaped(name + "<br/><i>" + graph.nodes[i].type->name + "</i>"));
+      },
+      [&](const std::string& indent) { out += indent + "end\n"; });
   each_edge(graph, [&](const Graph::Port& source, std::size_t to) {
-    out += fmt::format("  n{} {}|{}| n{}\n", source.node, is_stream(graph, source) ? "==>" : "-->",
+    out += fmt::format("  n{} {}|\"{}\"| n{}\n", source.node, is_stream(graph, source) ? "==>" : "-->",
                        edge_type(graph, source), to);
   });
   return out;

@@ -10,7 +10,8 @@ namespace talkgraph::cli {
 /// they do the same.
 std::string diff_graphs(const Graph& a, const Graph& b);
 
-/// A graph as Graphviz text, streams drawn with thick edges, types on the edges.
+/// A graph as Graphviz text: streams drawn with thick edges, types on the edges, a box around each graph used as a
+/// node.
 std::string draw_dot(const Graph& graph);
 /// The same in Mermaid.
 std::string draw_mermaid(const Graph& graph);

@@ -1,11 +1,16 @@
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <regex>
+#include <set>
+#include <sstream>
 
 #include "cli/look.h"
 #include "cli/registry.h"
 #include "experiment/experiment.h"
 #include "graph/differences.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
 namespace {
@@ -55,11 +60,75 @@ TEST(Pipelines, LoadAgainFromWhatARunFolderKeeps) {
 
 TEST(Pipelines, CanBeDrawn) {
   const Registry registry = all_nodes();
+  for (const auto& file : pipelines()) {
+    Diagnostics diagnostics;
+    const auto graph = load_graph(file, registry, diagnostics);
+    ASSERT_TRUE(graph) << diagnostics.str();
+    const test::TemporaryFolder folder;
+    const std::string dot = folder.write("g.dot", draw_dot(*graph));
+    EXPECT_EQ(std::system(("dot -Tsvg '" + dot + "' -o '" + folder.file("g.svg") + "'").c_str()), 0) << file;
+    const std::string svg = folder.read("g.svg");
+    for (const auto& node : graph->nodes) {
+      EXPECT_NE(svg.find(">" + node.name.substr(node.name.rfind('/') + 1) + "<"), std::string::npos) << node.name;
+      EXPECT_NE(svg.find(">" + node.type->name + "<"), std::string::npos) << node.name;
+    }
+  }
+}
+
+// A line is one of four statements; what is opened is closed; edges join declared nodes.
+TEST(Pipelines, AreDrawnInSoundMermaid) {
+  const std::regex node(R"#( +(n\d+)\["[^"]*"\])#"), open(R"#( +subgraph g\d+\["[^"]*"\])#"), close(" +end"),
+      edge(R"#(  (n\d+) (-->|==>)\|"\w+"\| (n\d+))#");
+  const Registry registry = all_nodes();
+  for (const auto& file : pipelines()) {
+    Diagnostics diagnostics;
+    const auto graph = load_graph(file, registry, diagnostics);
+    ASSERT_TRUE(graph) << diagnostics.str();
+    std::istringstream lines(draw_mermaid(*graph));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "flowchart LR");
+    std::set<std::string> nodes;
+    int depth = 0;
+    for (std::smatch m; std::getline(lines, line);) {
+      if (std::regex_match(line, m, node))
+        EXPECT_TRUE(nodes.insert(m[1]).second) << line;
+      else if (std::regex_match(line, m, edge))
+        EXPECT_TRUE(nodes.contains(m[1]) && nodes.contains(m[3])) << line;
+      else if (std::regex_match(line, open))
+        ++depth;
+      else if (std::regex_match(line, close))
+        EXPECT_GE(--depth, 0);
+      else
+        ADD_FAILURE() << file << ": " << line;
+    }
+    EXPECT_EQ(depth, 0);
+    EXPECT_EQ(nodes.size(), graph->nodes.size());
+  }
+}
+
+TEST(Pipelines, AreDrawnWithABoxAroundEachFragment) {
+  Registry registry = all_nodes();
   Diagnostics diagnostics;
-  const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", registry, diagnostics);
+  const auto graph = load_graph_text("g.json", R"({ "nodes": {
+    "a": { "type": "speaker.builtin" }, "hear/parts": { "type": "corpus.parts", "in": { "recording": "a" } },
+    "hear/say\"so\"": { "type": "corpus.splits", "in": { "recordings": "a" } } },
+    "outputs": { "x": "hear/parts.audio", "y": "hear/say\"so\"" } })",
+                                     registry, diagnostics);
   ASSERT_TRUE(graph) << diagnostics.str();
-  EXPECT_NE(draw_dot(*graph).find("speaker.builtin"), std::string::npos);
-  EXPECT_NE(draw_mermaid(*graph).find("==>|Track|"), std::string::npos);
+  EXPECT_EQ(draw_mermaid(*graph), R"(flowchart LR
+  n0["a<br/><i>speaker.builtin</i>"]
+  subgraph g0["hear"]
+    n1["parts<br/><i>corpus.parts</i>"]
+    n2["say#quot;so#quot;<br/><i>corpus.splits</i>"]
+  end
+  n0 ==>|"Recording"| n1
+  n0 ==>|"Recording"| n2
+)");
+  const std::string dot = draw_dot(*graph);
+  EXPECT_NE(dot.find("  subgraph cluster_0 {\n    label=\"hear\";\n"), std::string::npos) << dot;
+  EXPECT_NE(dot.find("    n2 [label=\"say\\\"so\\\"\\ncorpus.splits\"];\n"), std::string::npos) << dot;
+  EXPECT_NE(dot.find("  n0 -> n1 [label=\"Recording\", penwidth=2.5];\n"), std::string::npos) << dot;
 }
 
 TEST(Pipelines, CanBeCompared) {
