@@ -44,27 +44,53 @@ void list_trials(const Experiment& experiment, const std::vector<Graph>& graphs,
 /// Says how the trials go, and has the results written now and then.
 class Journal {
  public:
-  Journal(const Experiment& experiment, bool quiet, std::function<void()> write)
-      : experiment_(experiment), quiet_(quiet), write_(std::move(write)) {}
+  Journal(const Experiment& experiment, ProgressStyle style, std::function<void()> write)
+      : experiment_(experiment), style_(style), write_(std::move(write)) {}
 
   void changed(std::size_t trial, const TrialResult& result) {
-    if (result.status == Status::waiting) return started(trial);
-    ++ended_;
-    const auto& name = experiment_.trials[trial].name;
-    if (result.status == Status::failed)
-      fmt::print(stderr, "{}: failed: {}\n", name, result.error);
-    else if (result.status == Status::finished && !quiet_)
-      fmt::print(stderr, "[{}/{}] {}: done in {}, {} calls, {} found{}\n", ended_, experiment_.trials.size(), name,
-                 duration_text(result.wall), result.calls, result.loaded, left());
+    const bool starts = result.status == Status::waiting;
+    ended_ += !starts;
+    if (style_ == ProgressStyle::json)
+      tell_program(trial, result);
+    else if (starts)
+      tell(fmt::format("{}: started", name(trial)));
+    else if (result.status == Status::failed)
+      fmt::print(stderr, "{}: failed: {}\n", name(trial), result.error);
+    else if (result.status == Status::finished)
+      tell(fmt::format("[{}/{}] {}: done in {}, {} calls, {} found{}", ended_, experiment_.trials.size(), name(trial),
+                       duration_text(result.wall), result.calls, result.loaded, left()));
     // Not after each of a thousand short trials.
-    if (Clock::now() - written_ < std::chrono::seconds(2)) return;
+    if (starts || Clock::now() - written_ < std::chrono::seconds(2)) return;
     write_();
     written_ = Clock::now();
   }
 
+  void warned(std::size_t trial, std::string_view message) const {
+    if (style_ == ProgressStyle::json)
+      print({{"event", "warning"}, {"run", name(trial)}, {"message", message}});
+    else
+      fmt::print(stderr, "{}: warning: {}\n", name(trial), message);
+  }
+
  private:
-  void started(std::size_t trial) const {
-    if (!quiet_) fmt::print(stderr, "{}: started\n", experiment_.trials[trial].name);
+  const std::string& name(std::size_t trial) const { return experiment_.trials[trial].name; }
+  static void print(const Json& event) { fmt::print(stderr, "{}\n", event.dump()); }
+
+  void tell(const std::string& text) const {
+    if (style_ != ProgressStyle::quiet) fmt::print(stderr, "{}\n", text);
+  }
+
+  void tell_program(std::size_t trial, const TrialResult& result) const {
+    if (result.status == Status::waiting) return print({{"event", "run started"}, {"run", name(trial)}});
+    print({{"event", "run ended"},
+           {"run", name(trial)},
+           {"status", status_text(result.status)},
+           {"error", result.error},
+           {"seconds", result.wall},
+           {"calls", result.calls},
+           {"found", result.loaded},
+           {"done", ended_},
+           {"total", experiment_.trials.size()}});
   }
 
   std::string left() const {
@@ -76,7 +102,7 @@ class Journal {
   }
 
   const Experiment& experiment_;
-  const bool quiet_;
+  const ProgressStyle style_;
   const std::function<void()> write_;
   const Clock::time_point begun_ = Clock::now();
   Clock::time_point written_ = begun_;
@@ -121,7 +147,7 @@ int run_experiment(const std::string& file, const ExperimentCommand& command, co
       command.run.folder.empty() ? std::filesystem::path("runs") / experiment->name : command.run.folder;
   std::vector<TrialResult> results;
   const auto write = [&] { write_results(*experiment, *graphs, results, folder); };
-  Journal journal(*experiment, command.run.quiet, write);
+  Journal journal(*experiment, command.run.progress.value_or(usual_style()), write);
   CrewOptions options;
   options.threads = command.run.threads;
   options.memory = command.memory;
@@ -130,9 +156,7 @@ int run_experiment(const std::string& file, const ExperimentCommand& command, co
   options.folder = folder;
   options.cancel = guard.flag();
   options.on_change = [&](std::size_t trial, const TrialResult& result) { journal.changed(trial, result); };
-  options.on_warning = [&](std::size_t trial, std::string_view message) {
-    fmt::print(stderr, "{}: warning: {}\n", experiment->trials[trial].name, message);
-  };
+  options.on_warning = [&](std::size_t trial, std::string_view message) { journal.warned(trial, message); };
   run_trials(*experiment, *graphs, options, results);
   write();
   fmt::print("{}\n", (folder / "experiment.html").string());

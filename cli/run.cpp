@@ -9,6 +9,7 @@
 #include "cli/cache.h"
 #include "cli/signals.h"
 #include "nodes/types/report.h"
+#include "runtime/memory.h"
 #include "runtime/progress.h"
 #include "runtime/run_folder.h"
 #include "runtime/trace.h"
@@ -17,7 +18,7 @@ namespace talkgraph::cli {
 namespace {
 
 /// Where the time went, and what the cache spared: the nodes that took longest.
-void tell_summary(const Graph& graph, const RunResult& result) {
+void tell_summary(const Graph& graph, const RunResult& result, const MemoryWatch& memory) {
   constexpr std::size_t most = 8;
   std::vector<std::size_t> order;
   NodeStats all;
@@ -30,19 +31,26 @@ void tell_summary(const Graph& graph, const RunResult& result) {
     return result.nodes[a].cpu + result.nodes[a].saved > result.nodes[b].cpu + result.nodes[b].saved;
   });
   order.resize(std::min(order.size(), most));
-  const auto line = [](const std::string& name, const NodeStats& s) {
-    fmt::print(stderr, "{:<28} {:>7} {:>9.1f} s {:>9} {:>9.1f} s\n", name, s.calls, s.cpu, s.loaded, s.saved);
+  const auto line = [](const std::string& name, const NodeStats& s, std::uint64_t held) {
+    fmt::print(stderr, "{:<28} {:>7} {:>9.1f} s {:>9} {:>9.1f} s {:>9}\n", name, s.calls, s.cpu, s.loaded, s.saved,
+               size_text(held));
   };
-  fmt::print(stderr, "{:<28} {:>7} {:>11} {:>9} {:>11}\n", "node", "calls", "processor", "found", "spared");
-  for (const auto n : order) line(graph.nodes[n].name, result.nodes[n]);
-  line("all", all);
-  fmt::print(stderr, "took {}, at most {} of memory\n", duration_text(result.wall), size_text(peak_memory()));
+  fmt::print(stderr, "{:<28} {:>7} {:>11} {:>9} {:>11} {:>9}\n", "node", "calls", "processor", "found", "spared",
+             "memory");
+  for (const auto n : order) line(graph.nodes[n].name, result.nodes[n], memory.most(n));
+  line("all", all, peak_memory());
+  fmt::print(stderr, "took {}\n", duration_text(result.wall));
 }
 
 Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunObserver*> observers,
                 const std::filesystem::path& folder) {
-  Progress progress(command.quiet);
+  const ProgressStyle style = command.progress.value_or(usual_style());
+  // A program is told in events.
+  const bool told_in_words = style != ProgressStyle::json;
+  Progress progress(style);
+  MemoryWatch memory;
   observers.push_back(&progress);
+  observers.push_back(&memory);
   std::optional<Trace> trace;
   if (!command.trace.empty()) observers.push_back(&trace.emplace(command.trace));
   const InterruptGuard guard;
@@ -57,17 +65,17 @@ Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunOb
   options.cache = cache.get();
   try {
     Outcome outcome{success, run(graph, options)};
-    if (!command.quiet) tell_summary(graph, *outcome.result);
+    if (told_in_words && style != ProgressStyle::quiet) tell_summary(graph, *outcome.result, memory);
     if (const auto failures = outcome.result->failures.size()) {
-      fmt::print(stderr, "{} failed, as said above\n", failures);
+      if (told_in_words) fmt::print(stderr, "{} failed, as said above\n", failures);
       outcome.code = failed;
     }
     return outcome;
   } catch (const Cancelled&) {
-    fmt::print(stderr, "stopped\n");
+    if (told_in_words) fmt::print(stderr, "stopped\n");
     return {cancelled, {}};
   } catch (const RunError& e) {
-    fmt::print(stderr, "error: {}\n", e.what());
+    if (told_in_words) fmt::print(stderr, "error: {}\n", e.what());
     return {failed, {}};
   }
 }

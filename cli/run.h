@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "graph/graph.h"
 #include "runtime/executor.h"
+#include "runtime/progress.h"
 
 namespace talkgraph::cli {
 
@@ -19,11 +21,11 @@ struct RunCommand {
   int threads = 2;
   bool serial = false;
   bool keep_going = false;
-  bool overwrite = false;  ///< a folder that holds a run may be written to
-  bool quiet = false;
-  bool cached = false;          ///< results are kept and found
-  std::filesystem::path trace;  ///< file for the trace viewers; empty: none
-  std::filesystem::path cache;  ///< empty: Cache::default_folder()
+  bool overwrite = false;                 ///< a folder that holds a run may be written to
+  std::optional<ProgressStyle> progress;  ///< none: usual_style()
+  bool cached = false;                    ///< results are kept and found
+  std::filesystem::path trace;            ///< file for the trace viewers; empty: none
+  std::filesystem::path cache;            ///< empty: Cache::default_folder()
   std::uint64_t cache_limit = Cache::default_limit;
 };
 

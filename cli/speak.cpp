@@ -158,7 +158,7 @@ int speak(const SpeakCommand& command, const Registry& registry) {
   RunCommand run;
   run.folder = work.path;
   run.threads = command.threads;
-  run.quiet = command.quiet;
+  run.progress = command.progress;
   run.keep_going = true;
   const Outcome outcome = run_graph(*graph, run);
   if (!outcome.result) return outcome.code;

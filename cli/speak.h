@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/run.h"
 #include "graph/registry.h"
 
 namespace talkgraph::cli {
@@ -19,7 +21,7 @@ struct SpeakCommand {
   std::string base;                      ///< clip or still to draw upon; empty: the model's own
   std::vector<std::string> sets;
   int threads = 2;
-  bool quiet = false;
+  std::optional<ProgressStyle> progress;
 };
 
 int speak(const SpeakCommand& command, const Registry& registry);

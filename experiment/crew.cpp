@@ -2,27 +2,19 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <condition_variable>
-#include <fstream>
 #include <mutex>
 #include <thread>
 
+#include "runtime/memory.h"
 #include "runtime/run_folder.h"
 
 namespace talkgraph {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Memory that this process holds now, bytes.
-std::uint64_t held_memory() {
-  std::uint64_t total = 0, resident = 0;
-  std::ifstream("/proc/self/statm") >> total >> resident;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
 
 /// Tells on what a trial warns of.
 class Warnings final : public RunObserver {
@@ -164,24 +156,7 @@ class Crew {
   std::uint64_t each_ = 0;  // bytes
 };
 
-/// A number that a file begins with, or nothing.
-std::optional<std::uint64_t> number_in(const char* file) {
-  std::uint64_t value = 0;
-  if (std::ifstream(file) >> value) return value;
-  return {};
-}
-
 }  // namespace
-
-std::uint64_t free_memory() {
-  std::uint64_t bytes = 0;
-  std::ifstream info("/proc/meminfo");
-  for (std::string name, unit; info >> name && bytes == 0; std::getline(info, unit))
-    if (name == "MemAvailable:" && info >> bytes) bytes *= 1024;
-  const auto limit = number_in("/sys/fs/cgroup/memory.max"), used = number_in("/sys/fs/cgroup/memory.current");
-  if (limit && used) bytes = std::min(bytes, *limit > *used ? *limit - *used : 0);
-  return bytes;
-}
 
 void run_trials(const Experiment& experiment, const std::vector<Graph>& graphs, const CrewOptions& options,
                 std::vector<TrialResult>& results) {

@@ -26,7 +26,4 @@ struct CrewOptions {
 void run_trials(const Experiment& experiment, const std::vector<Graph>& graphs, const CrewOptions& options,
                 std::vector<TrialResult>& results);
 
-/// Memory that a process may still take on this machine, bytes: what is free, and no more than its control group has.
-std::uint64_t free_memory();
-
 }  // namespace talkgraph

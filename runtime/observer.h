@@ -49,6 +49,12 @@ struct RunReport {
   std::vector<Failure> failures;
 };
 
+/// {"node", "item", "place", "cause"}
+Json to_json(const Failure& failure);
+/// {"status", "error", "seconds", "failures": [...], "nodes": [{"name", "type", "calls", ...}]}; no error if there is
+/// none.
+Json to_json(const Graph& graph, const RunReport& report);
+
 /// Watches a run: progress, a log, a trace. Nodes are given by their index.
 /// Called from several threads at once.
 class RunObserver {

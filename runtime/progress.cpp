@@ -29,20 +29,27 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
 }
 
-Progress::Progress(bool quiet, std::FILE* out)
-    : Progress(out, !quiet && isatty(fileno(out)) != 0,
-               quiet                      ? Clock::duration::max()
-               : isatty(fileno(out)) != 0 ? std::chrono::milliseconds(200)
-                                          : std::chrono::milliseconds(5000)) {}
+ProgressStyle usual_style(std::FILE* out) {
+  return isatty(fileno(out)) != 0 ? ProgressStyle::terminal : ProgressStyle::plain;
+}
 
-Progress::Progress(std::FILE* out, bool terminal, Clock::duration interval)
-    : out_(out), terminal_(terminal), interval_(interval) {}
+Progress::Progress(ProgressStyle style, std::FILE* out)
+    : Progress(style, out,
+               style == ProgressStyle::quiet      ? Clock::duration::max()
+               : style == ProgressStyle::terminal ? std::chrono::milliseconds(200)
+               : style == ProgressStyle::json     ? std::chrono::milliseconds(1000)
+                                                  : std::chrono::milliseconds(5000)) {}
+
+Progress::Progress(ProgressStyle style, std::FILE* out, Clock::duration interval)
+    : style_(style), out_(out), interval_(interval) {}
 
 Progress::~Progress() { stop(); }
 
 void Progress::started(const Graph& graph) {
   stop();
+  if (style_ == ProgressStyle::json) tell("", {{"event", "started"}, {"graph", graph.name}});
   const std::lock_guard lock(mutex_);
+  graph_ = &graph;
   nodes_.clear();
   totals_.clear();
   for (std::size_t n = 0; n < graph.nodes.size(); ++n) {
@@ -97,23 +104,34 @@ void Progress::progress(int node, const std::string& item, double share) {
 }
 
 void Progress::warn(int node, const std::string& item, std::string_view message) {
-  tell(fmt::format("warning: {}{}: {}", nodes_[static_cast<std::size_t>(node)].name,
-                   item.empty() ? "" : fmt::format(", item \"{}\"", item), message));
+  tell(fmt::format("warning: {}{}: {}", name(node), item.empty() ? "" : fmt::format(", item \"{}\"", item), message),
+       {{"event", "warning"}, {"node", name(node)}, {"item", item}, {"message", message}});
 }
 
-void Progress::notice(std::string_view message) { tell(fmt::format("warning: {}", message)); }
+void Progress::notice(std::string_view message) {
+  tell(fmt::format("warning: {}", message), {{"event", "warning"}, {"message", message}});
+}
 
-void Progress::failed(const Failure& failure) { tell(failure.str()); }
+void Progress::failed(const Failure& failure) {
+  Json event = {{"event", "failure"}};
+  event.update(to_json(failure));
+  tell(failure.str(), event);
+}
 
-void Progress::tell(const std::string& text) {
+void Progress::tell(const std::string& text, const Json& event) {
   const std::lock_guard lock(mutex_);
   erase();
-  fmt::print(out_, "{}\n", text);
+  fmt::print(out_, "{}\n", style_ == ProgressStyle::json ? event.dump() : text);
   std::fflush(out_);
 }
 
-void Progress::ended(const RunReport&) {
+void Progress::ended(const RunReport& report) {
   stop();
+  if (style_ == ProgressStyle::json) {
+    Json event = {{"event", "ended"}};
+    event.update(to_json(*graph_, report));
+    return tell("", event);
+  }
   const std::lock_guard lock(mutex_);
   erase();
 }
@@ -127,32 +145,53 @@ std::vector<std::string> Progress::lines(Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> all;
   for (const auto& state : nodes_)
-    if (!state.working.empty()) all.push_back(line(state, now).text);
+    if (!state.working.empty()) all.push_back(text(pace(state, now)));
   return all;
 }
 
-Progress::Line Progress::line(const NodeState& state, Clock::time_point now) const {
-  const double elapsed = seconds(now - state.since);
+Progress::Pace Progress::pace(const NodeState& state, Clock::time_point now) const {
+  Pace out;
+  out.node = state.name;
+  out.runs_once = state.runs_once;
+  out.seconds = seconds(now - state.since);
   // Items for which a node has nothing to do are no measure of its pace.
-  const std::size_t called = state.source ? state.done : std::min(state.calls, state.done);
-  double done = static_cast<double>(called);
+  out.done = state.source ? state.done : std::min(state.calls, state.done);
+  double done = static_cast<double>(out.done);
   for (const auto& [item, share] : state.working) done += share;
-  Line out{fmt::format("{:<28} ", state.name), std::numeric_limits<double>::infinity()};
-  const auto total_at = totals_.find(state.domain);
-  const double total = state.runs_once             ? 1
-                       : total_at == totals_.end() ? 0
-                                                   : static_cast<double>(total_at->second - (state.done - called));
+  out.share = done;
+  const auto total = totals_.find(state.domain);
   if (state.runs_once)
-    out.text += done > 0 ? fmt::format("{:3.0f} %", 100 * done) : "working";
+    out.total = 1;
+  else if (total != totals_.end())
+    out.total = static_cast<double>(total->second - (state.done - out.done));
+  if (!state.runs_once && out.done > 0 && out.seconds > 0) out.rate = static_cast<double>(out.done) / out.seconds;
+  if (out.total > 0 && done > 0 && done <= out.total && out.seconds > 0)
+    out.left = out.seconds * (out.total - done) / done;
+  return out;
+}
+
+std::string Progress::text(const Pace& pace) {
+  std::string out = fmt::format("{:<28} ", pace.node);
+  if (pace.runs_once)
+    out += pace.share > 0 ? fmt::format("{:3.0f} %", 100 * pace.share) : "working";
   else
-    out.text += total > 0 ? fmt::format("{}/{:.0f}", called, total) : fmt::format("{}", called);
-  out.text += "  " + duration_text(elapsed);
-  if (!state.runs_once && called > 0 && elapsed > 0)
-    out.text += fmt::format("  {:.3g}/s", static_cast<double>(called) / elapsed);
-  if (total > 0 && done > 0 && done <= total && elapsed > 0) {
-    out.left = elapsed * (total - done) / done;
-    out.text += fmt::format("  {} left", duration_text(out.left));
-  }
+    out += pace.total > 0 ? fmt::format("{}/{:.0f}", pace.done, pace.total) : fmt::format("{}", pace.done);
+  out += "  " + duration_text(pace.seconds);
+  if (pace.rate) out += fmt::format("  {:.3g}/s", *pace.rate);
+  if (pace.left) out += fmt::format("  {} left", duration_text(*pace.left));
+  return out;
+}
+
+Json Progress::json(const Pace& pace) {
+  Json out = {{"event", "progress"}, {"node", pace.node}};
+  if (pace.runs_once)
+    out["share"] = pace.share;
+  else
+    out["done"] = pace.done;
+  if (!pace.runs_once && pace.total > 0) out["total"] = pace.total;
+  out["seconds"] = pace.seconds;
+  if (pace.rate) out["rate"] = *pace.rate;
+  if (pace.left) out["left"] = *pace.left;
   return out;
 }
 
@@ -160,22 +199,26 @@ Progress::Line Progress::line(const NodeState& state, Clock::time_point now) con
 void Progress::report() {
   erase();
   const auto now = Clock::now();
-  std::vector<Line> lines;
+  std::vector<Pace> busy;
   for (auto& state : nodes_) {
     // A fast node is seldom caught in a call: what went on since the last report counts as busy.
-    const bool busy = !state.working.empty() || state.changed;
+    const bool at_work = !state.working.empty() || state.changed;
     state.changed = false;
-    if (busy && state.begun) lines.push_back(line(state, now));
+    if (at_work && state.begun) busy.push_back(pace(state, now));
   }
-  std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.left > b.left; });
-  lines.resize(std::min(lines.size(), terminal_ ? most_lines : most_plain_lines));
-  for (auto& [text, left] : lines) {
-    if (terminal_) {
-      const auto width = terminal_width(out_);
-      if (text.size() >= width) text.resize(width - 1);
-      ++drawn_;
+  std::stable_sort(busy.begin(), busy.end(),
+                   [](const Pace& a, const Pace& b) { return a.left.value_or(INFINITY) > b.left.value_or(INFINITY); });
+  if (style_ == ProgressStyle::json) {
+    for (const auto& pace : busy) fmt::print(out_, "{}\n", json(pace).dump());
+  } else {
+    const bool terminal = style_ == ProgressStyle::terminal;
+    busy.resize(std::min(busy.size(), terminal ? most_lines : most_plain_lines));
+    for (const auto& pace : busy) {
+      std::string line = text(pace);
+      if (terminal && line.size() >= terminal_width(out_)) line.resize(terminal_width(out_) - 1);
+      drawn_ += terminal;
+      fmt::print(out_, "{}\n", line);
     }
-    fmt::print(out_, "{}\n", text);
   }
   std::fflush(out_);
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -13,17 +14,24 @@
 
 namespace talkgraph {
 
-/// Tells how far a run is: on a terminal a live line for each busy node,
-/// elsewhere plain lines every few seconds. Each gives the node's name, the
-/// items done and their total where known, the rate, and an estimate of the
-/// time left; the slowest come first. Warnings and failures are told at once.
+enum class ProgressStyle {
+  terminal,  ///< a live line for each busy node
+  plain,     ///< lines every few seconds
+  json,      ///< for programs: an object a line, as docs/cli.md lists them
+  quiet,     ///< warnings and failures only
+};
+/// Live lines on a terminal, plain ones elsewhere.
+ProgressStyle usual_style(std::FILE* out = stderr);
+
+/// Tells how far a run is: for each busy node its name, the items done and
+/// their total where known, the rate, and an estimate of the time left; the
+/// slowest come first. Warnings and failures are told at once.
 class Progress final : public RunObserver {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `quiet`: warnings and failures only.
-  explicit Progress(bool quiet = false, std::FILE* out = stderr);
-  Progress(std::FILE* out, bool terminal, Clock::duration interval);
+  explicit Progress(ProgressStyle style, std::FILE* out = stderr);
+  Progress(ProgressStyle style, std::FILE* out, Clock::duration interval);
   ~Progress() override;
 
   void started(const Graph&) override;
@@ -54,20 +62,32 @@ class Progress final : public RunObserver {
     bool changed = false;  ///< since the last report
   };
 
-  struct Line {
-    std::string text;
-    double left = 0;  ///< seconds, infinite where not known
+  /// How far a node is.
+  struct Pace {
+    std::string node;
+    bool runs_once = false;
+    std::size_t done = 0;        ///< items
+    double share = 0;            ///< of the one call of a node that runs once
+    double total = 0;            ///< items to come and done; 0: not known
+    double seconds = 0;          ///< since its first call
+    std::optional<double> rate;  ///< items a second
+    std::optional<double> left;  ///< seconds
   };
-  Line line(const NodeState&, Clock::time_point now) const;
+  Pace pace(const NodeState&, Clock::time_point now) const;
+  static std::string text(const Pace&);
+  static Json json(const Pace&);
   void report();
-  void tell(const std::string& text);
+  /// A line of text, or the event of a program.
+  void tell(const std::string& text, const Json& event);
+  const std::string& name(int node) const { return nodes_[static_cast<std::size_t>(node)].name; }
   void erase();
   void stop();
 
+  const ProgressStyle style_;
   std::FILE* const out_;
-  const bool terminal_;
   const Clock::duration interval_;
   mutable std::mutex mutex_;
+  const Graph* graph_ = nullptr;
   std::vector<NodeState> nodes_;
   std::map<int, std::size_t> totals_;
   std::size_t drawn_ = 0;  ///< live lines on the terminal

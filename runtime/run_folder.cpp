@@ -2,11 +2,11 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <stdexcept>
 
 #include "graph/output_file.h"
+#include "runtime/memory.h"
 
 namespace talkgraph {
 namespace {
@@ -29,12 +29,6 @@ fs::path unused_folder(const Graph& graph, std::chrono::system_clock::time_point
 }
 
 }  // namespace
-
-std::size_t peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
 
 RunFolder::RunFolder(const Graph& graph, fs::path path)
     : graph_(graph), path_(path.empty() ? unused_folder(graph, started_) : std::move(path)) {
@@ -80,33 +74,12 @@ Json RunFolder::header(const std::string& status) const {
 }
 
 void RunFolder::ended(const RunReport& report) {
-  using Status = RunReport::Status;
-  const std::string status = report.status == Status::finished ? "finished"
-                             : report.status == Status::failed ? "failed"
-                                                               : "cancelled";
-  Json json = header(status);
+  Json json = header("");
   json["ended"] = iso(Clock::now());
-  json["seconds"] = report.wall;
   json["peak_memory_bytes"] = peak_memory();
-  if (!report.error.empty()) json["error"] = report.error;
-  json["failures"] = Json::array();
-  for (const auto& f : report.failures)
-    json["failures"].push_back({{"node", f.node}, {"item", f.item}, {"place", f.place}, {"cause", f.cause}});
-  json["nodes"] = Json::array();
-  for (std::size_t n = 0; n < report.nodes.size(); ++n) {
-    const auto& stats = report.nodes[n];
-    json["nodes"].push_back({{"name", graph_.nodes[n].name},
-                             {"type", graph_.nodes[n].type->name},
-                             {"calls", stats.calls},
-                             {"skipped", stats.skipped},
-                             {"failed", stats.failed},
-                             {"loaded", stats.loaded},
-                             {"unneeded", stats.unneeded},
-                             {"saved_seconds", stats.saved},
-                             {"seconds", stats.wall},
-                             {"cpu_seconds", stats.cpu}});
-  }
+  json.update(to_json(graph_, report));
   write_file(path_ / "run.json", json.dump(2) + "\n");
+  const std::string status = json["status"];
   log(report.error.empty() ? status : status + ": " + report.error);
 }
 

@@ -11,9 +11,6 @@
 
 namespace talkgraph {
 
-/// Most memory this process has held so far, bytes.
-std::size_t peak_memory();
-
 /// The folder of one run. Holds
 ///   graph.resolved.json  the graph as it can be run again
 ///   log.txt              what nodes said and what failed, with UTC times

@@ -105,6 +105,14 @@ int draw(const std::string& file, const Registry& registry, const std::vector<st
   return pclose(dot) == 0 ? success : (fmt::print(stderr, "Graphviz (dot) failed; --format dot needs none\n"), failed);
 }
 
+void add_progress(CLI::App& app, std::optional<ProgressStyle>& style) {
+  app.add_option("--progress", style, "terminal, plain or json (default: as it fits standard error)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, ProgressStyle>{
+          {"terminal", ProgressStyle::terminal}, {"plain", ProgressStyle::plain}, {"json", ProgressStyle::json}}));
+  app.add_flag_callback(
+      "-q,--quiet", [&style] { style = ProgressStyle::quiet; }, "no progress, only warnings and failures");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -140,7 +148,7 @@ int main(int argc, char** argv) {
     c->add_option("--cache-size", run.cache_limit, "most that the cache may hold, as 500MB or 20GB")
         ->transform(CLI::AsSizeValue(true))
         ->capture_default_str();
-    c->add_flag("-q,--quiet", run.quiet, "no progress, only warnings and failures");
+    add_progress(*c, run.progress);
   }
   run_app->add_flag("--serial", run.serial, "one thread, node by node");
   run_app->add_option("--trace", run.trace, "file that the Perfetto and Chrome trace viewers open");
@@ -179,7 +187,7 @@ int main(int argc, char** argv) {
       ->take_all()
       ->allow_extra_args(false);
   speak_app->add_option("--threads", speech.threads, "threads")->check(CLI::Range(1, 256));
-  speak_app->add_flag("-q,--quiet", speech.quiet, "no progress, only warnings and failures");
+  add_progress(*speak_app, speech.progress);
 
   auto* check_app = app.add_subcommand("check", "check graphs without running them");
   check_app->add_option("graphs", files, "graph files")->required();

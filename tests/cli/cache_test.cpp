@@ -36,7 +36,8 @@ TEST(CacheCommand, RunsShareWhatTheyKeep) {
                                                node + R"(.audio" } } } })");
   };
   RunCommand run;
-  run.quiet = run.cached = true;
+  run.cached = true;
+  run.progress = ProgressStyle::quiet;
   run.cache = folder.path() / "cache";
   run.folder = folder.path() / "first";
   const auto registry = all_nodes();

@@ -30,7 +30,7 @@ TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
   RunCommand run;
   run.sets = {"sentences=12", "held_out=2"};
   run.folder = folder;
-  run.quiet = true;
+  run.progress = ProgressStyle::quiet;
   ASSERT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, registry), success);
   const Json metrics = Json::parse(temporary.read("run/metrics.json"));
   const auto& rows = metrics["scores"]["rows"];
@@ -45,7 +45,7 @@ TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
   words.text = "Bob may buy a blue boat.";
   words.output = folder / "said.mp4";
   words.visemes = folder / "said.tsv";
-  words.quiet = true;
+  words.progress = ProgressStyle::quiet;
   ASSERT_EQ(speak(words, registry), success);
   const Video clip = open_video((folder / "said.mp4").string());
   EXPECT_GT(clip.source->frames(), 25);
@@ -97,7 +97,7 @@ TEST(EndToEnd, LearnsReadyMadeVisualTracks) {
   RunCommand run;
   run.sets = {"fps=50", "manifest=" + temporary.write("manifest.json", Json{{"clips", clips}}.dump())};
   run.folder = temporary.path() / "run";
-  run.quiet = true;
+  run.progress = ProgressStyle::quiet;
   ASSERT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/own-tracks.json", run, all_nodes()), success);
   const Json rows = Json::parse(temporary.read("run/metrics.json"))["scores"]["rows"];
   EXPECT_EQ(rows["SSGPDM"]["sequences"], 1);
@@ -111,13 +111,13 @@ TEST(EndToEnd, RefusesAFolderThatCannotBeWritten) {
   const test::TemporaryFolder temporary;
   RunCommand run;
   run.folder = temporary.write("in_the_way", "x") + "/run";
-  run.quiet = true;
+  run.progress = ProgressStyle::quiet;
   EXPECT_THROW(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, all_nodes()), std::runtime_error);
 }
 
 TEST(EndToEnd, SaysWhatIsWrongWithAGraph) {
   RunCommand run;
-  run.quiet = true;
+  run.progress = ProgressStyle::quiet;
   EXPECT_EQ(run_file("nowhere.json", run, all_nodes()), usage);
   run.sets = {"sentences=0"};
   EXPECT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, all_nodes()), usage);

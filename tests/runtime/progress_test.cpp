@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "runtime/executor.h"
 #include "tests/runtime/graph_builder.h"
 #include "tests/runtime/toy_nodes.h"
@@ -49,7 +51,7 @@ class ProgressTest : public testing::Test {
 
 TEST_F(ProgressTest, TellsItemsTotalRateAndTimeLeft) {
   Paper paper;
-  Progress progress(paper.file, false, 1h);
+  Progress progress(ProgressStyle::plain, paper.file, 1h);
   progress.started(b_.graph);
   progress.domain_size(source_, 40);
   for (int i = 0; i < 10; ++i) {
@@ -69,7 +71,7 @@ TEST_F(ProgressTest, TellsItemsTotalRateAndTimeLeft) {
 
 TEST_F(ProgressTest, DoesNotCountItemsThatANodeHadNothingToDoFor) {
   Paper paper;
-  Progress progress(paper.file, false, 1h);
+  Progress progress(ProgressStyle::plain, paper.file, 1h);
   progress.started(b_.graph);
   progress.domain_size(source_, 40);
   for (int i = 0; i < 20; ++i) progress.item_done(track_, std::to_string(i));
@@ -84,7 +86,7 @@ TEST_F(ProgressTest, DoesNotCountItemsThatANodeHadNothingToDoFor) {
 
 TEST_F(ProgressTest, TellsWarningsEvenWhenQuiet) {
   Paper paper;
-  Progress progress(true, paper.file);
+  Progress progress(ProgressStyle::quiet, paper.file);
   progress.started(b_.graph);
   progress.warn(track_, "u3", "half of it is dark");
   EXPECT_EQ(paper.text(), "warning: track, item \"u3\": half of it is dark\n");
@@ -92,7 +94,7 @@ TEST_F(ProgressTest, TellsWarningsEvenWhenQuiet) {
 
 TEST_F(ProgressTest, TellsTheShareOfANodeThatRunsOnce) {
   Paper paper;
-  Progress progress(paper.file, false, 1h);
+  Progress progress(ProgressStyle::plain, paper.file, 1h);
   progress.started(b_.graph);
   progress.call_started(train_, "");
   EXPECT_THAT(progress.lines(Progress::Clock::now()).at(0), HasSubstr("working"));
@@ -104,7 +106,7 @@ TEST_F(ProgressTest, TellsTheShareOfANodeThatRunsOnce) {
 
 TEST_F(ProgressTest, WritesPlainLinesWherePiped) {
   Paper paper;
-  Progress progress(paper.file, false, 1ms);
+  Progress progress(ProgressStyle::plain, paper.file, 1ms);
   toy::dawdle_at_most = 3000;
   RunOptions options;
   options.observers = {&progress};
@@ -114,9 +116,48 @@ TEST_F(ProgressTest, WritesPlainLinesWherePiped) {
   EXPECT_THAT(paper.text(), Not(HasSubstr("\x1b")));
 }
 
+TEST_F(ProgressTest, GivesProgramsAnObjectALine) {
+  Paper paper;
+  Progress progress(ProgressStyle::json, paper.file, 1ms);
+  toy::dawdle_at_most = 3000;
+  RunOptions options;
+  options.observers = {&progress};
+  run(b_.graph, options);
+  toy::dawdle_at_most = 0;
+  progress.warn(track_, "u3", "half of it is \"dark\"");
+  std::istringstream lines(paper.text());
+  std::vector<Json> events;
+  for (std::string line; std::getline(lines, line);) events.push_back(Json::parse(line));
+  ASSERT_GE(events.size(), 4u);
+  EXPECT_EQ(events.front(), (Json{{"event", "started"}, {"graph", "test.json"}}));
+  bool told = false;
+  for (const auto& e : events) told = told || (e["event"] == "progress" && e["node"] == "track" && e["done"] > 0);
+  EXPECT_TRUE(told);
+  const Json& ended = events[events.size() - 2];
+  EXPECT_EQ(ended["event"], "ended");
+  EXPECT_EQ(ended["status"], "finished");
+  EXPECT_EQ(ended["nodes"].size(), 3u);
+  EXPECT_EQ(events.back()["message"], "half of it is \"dark\"");
+}
+
+TEST_F(ProgressTest, GivesProgramsTheFailureThatStoppedTheRun) {
+  Paper paper;
+  Progress progress(ProgressStyle::json, paper.file, 1h);
+  progress.started(b_.graph);
+  RunReport report;
+  report.status = RunReport::Status::failed;
+  report.error = "node \"track\": no";
+  report.nodes.resize(3);
+  progress.failed({"track", "u3", "g.json:1:2", "no"});
+  progress.ended(report);
+  EXPECT_THAT(paper.text(),
+              HasSubstr(R"({"event":"failure","node":"track","item":"u3","place":"g.json:1:2","cause":"no"})"));
+  EXPECT_THAT(paper.text(), HasSubstr(R"("status":"failed","seconds":0.0,"error":"node \"track\": no")"));
+}
+
 TEST_F(ProgressTest, ClearsItsLinesOnATerminal) {
   Paper paper;
-  Progress progress(paper.file, true, 1ms);
+  Progress progress(ProgressStyle::terminal, paper.file, 1ms);
   toy::dawdle_at_most = 3000;
   RunOptions options;
   options.observers = {&progress};
