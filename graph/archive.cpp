@@ -4,6 +4,7 @@
 #include <hdf5.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
@@ -29,6 +30,15 @@ class Handle {
   hid_t id_;
   herr_t (*close_)(hid_t);
 };
+
+/// Of texts of `length` bytes, padded with zeros. HDF5 knows no text of length 0. The bytes are UTF-8, but are not
+/// called so: Octave would not read them.
+Handle text_type(std::size_t length) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "a text cannot be kept");
+  H5Tset_size(type, std::max<std::size_t>(length, 1));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  return type;
+}
 
 /// What reading and writing share: the file, and the group that is open.
 class Hdf5Archive : public Archive {
@@ -69,25 +79,30 @@ class Hdf5Archive : public Archive {
 
 class Hdf5Writer final : public Hdf5Archive {
  public:
-  explicit Hdf5Writer(const std::string& path)
-      : Hdf5Archive(path, "cannot be created",
-                    [&] { return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT); }) {}
+  explicit Hdf5Writer(const std::string& path) : Hdf5Archive(path, "cannot be created", [&] { return create(path); }) {}
   bool loading() const override { return false; }
+  void note(std::string_view member, std::string_view what, std::string_view text) override {
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "a text cannot be kept");
+    H5Tset_size(type, H5T_VARIABLE);  // as h5py makes a str of
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    const std::string terminated(text);
+    const char* const data = terminated.c_str();
+    attribute(member, what, type, &data);
+  }
+  void note(std::string_view member, std::string_view what, double number) override {
+    attribute(member, what, H5T_NATIVE_DOUBLE, &number);
+  }
 
  protected:
-  void number(std::string_view name, double& v) override { attribute(name, H5T_NATIVE_DOUBLE, &v); }
-  void integer(std::string_view name, std::int64_t& v) override { attribute(name, H5T_NATIVE_INT64, &v); }
-  void text(std::string_view name, std::string& v) override {
-    const std::vector<std::uint8_t> raw(v.begin(), v.end());
-    dataset(name, H5T_NATIVE_UINT8, {raw.size()}, raw.data());
-  }
+  void number(std::string_view name, double& v) override { dataset(name, H5T_NATIVE_DOUBLE, {}, &v); }
+  void integer(std::string_view name, std::int64_t& v) override { dataset(name, H5T_NATIVE_INT64, {}, &v); }
+  void text(std::string_view name, std::string& v) override { dataset(name, text_type(v.size()), {}, v.c_str()); }
   void texts(std::string_view name, std::vector<std::string>& v) override {
-    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, place(name));
-    H5Tset_size(type, H5T_VARIABLE);
-    H5Tset_cset(type, H5T_CSET_UTF8);
-    std::vector<const char*> raw;
-    for (const auto& s : v) raw.push_back(s.c_str());
-    dataset(name, type, {raw.size()}, raw.data());
+    std::size_t length = 1;
+    for (const auto& s : v) length = std::max(length, s.size());
+    std::string raw;
+    for (const auto& s : v) raw += s + std::string(length - s.size(), '\0');
+    dataset(name, text_type(length), {v.size()}, raw.data());
   }
   void numbers(std::string_view name, std::vector<double>& v) override {
     dataset(name, H5T_NATIVE_DOUBLE, {v.size()}, v.data());
@@ -102,24 +117,57 @@ class Hdf5Writer final : public Hdf5Archive {
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = v;
     dataset(name, H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(v.rows()), static_cast<hsize_t>(v.cols())}, rows.data());
   }
+  void matrices(std::string_view name, std::vector<Eigen::MatrixXd>& v) override {
+    const Eigen::MatrixXd none;
+    const Eigen::MatrixXd& first = v.empty() ? none : v.front();
+    const bool alike = std::all_of(v.begin(), v.end(), [&](const Eigen::MatrixXd& m) {
+      return m.rows() == first.rows() && m.cols() == first.cols();
+    });
+    if (!alike) {
+      std::size_t size = v.size();
+      return list(name, size, [&](std::size_t i) { matrix(std::to_string(i), v[i]); });
+    }
+    std::vector<double> all;
+    for (const auto& m : v)
+      for (const auto row : m.rowwise()) all.insert(all.end(), row.begin(), row.end());
+    const auto rows = static_cast<hsize_t>(first.rows()), columns = static_cast<hsize_t>(first.cols());
+    dataset(name, H5T_NATIVE_DOUBLE, {v.size(), rows, columns}, all.data());
+  }
+  bool present(std::string_view, bool value) override { return value; }
   void enter(std::string_view name) override {
     const std::string what = place(name) + ": cannot be written";
     push(name,
-         Handle(H5Gcreate2(group(), std::string(name).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, what));
+         Handle(H5Gcreate2(group(), std::string(name).c_str(), H5P_DEFAULT, timeless(H5P_GROUP_CREATE), H5P_DEFAULT),
+                H5Gclose, what));
   }
 
  private:
-  void attribute(std::string_view name, hid_t type, const void* data) {
-    const std::string what = place(name) + ": cannot be written";
-    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, what);
-    const Handle attr(H5Acreate2(group(), std::string(name).c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                      what);
-    if (H5Awrite(attr, type, data) < 0) throw std::runtime_error(what);
+  /// A file that HDF5 1.8 and later read: small groups take little room.
+  static hid_t create(const std::string& path) {
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path);
+    H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
+    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, timeless(H5P_FILE_CREATE), access);
+  }
+  /// Objects that do not say when they were made: the same value gives the same bytes.
+  static Handle timeless(hid_t kind) {
+    Handle properties(H5Pcreate(kind), H5Pclose, "an HDF5 object cannot be made");
+    H5Pset_obj_track_times(properties, false);
+    return properties;
+  }
+  void attribute(std::string_view member, std::string_view what, hid_t type, const void* data) {
+    const std::string failure = place(member) + ": cannot be written";
+    const std::string object = member.empty() ? "." : std::string(member);
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, failure);
+    const Handle attr(H5Acreate_by_name(group(), object.c_str(), std::string(what).c_str(), type, space, H5P_DEFAULT,
+                                        H5P_DEFAULT, H5P_DEFAULT),
+                      H5Aclose, failure);
+    if (H5Awrite(attr, type, data) < 0) throw std::runtime_error(failure);
   }
   void dataset(std::string_view name, hid_t type, std::vector<hsize_t> size, const void* data) {
     const std::string what = place(name) + ": cannot be written";
     const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose, what);
-    const Handle set(H5Dcreate2(group(), std::string(name).c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+    const Handle set(H5Dcreate2(group(), std::string(name).c_str(), type, space, H5P_DEFAULT,
+                                timeless(H5P_DATASET_CREATE), H5P_DEFAULT),
                      H5Dclose, what);
     hsize_t count = 1;
     for (const auto n : size) count *= n;
@@ -144,30 +192,13 @@ class Hdf5Reader final : public Hdf5Archive {
   bool loading() const override { return true; }
 
  protected:
-  void number(std::string_view name, double& v) override { attribute(name, H5T_NATIVE_DOUBLE, &v); }
-  void integer(std::string_view name, std::int64_t& v) override { attribute(name, H5T_NATIVE_INT64, &v); }
-  void text(std::string_view name, std::string& v) override {
-    std::vector<std::uint8_t> raw;
-    bytes(name, raw);
-    v.assign(raw.begin(), raw.end());
-  }
-  void texts(std::string_view name, std::vector<std::string>& v) override {
-    const Handle set = open(name);
-    const auto size = shape(set, 1, name);
-    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, place(name));
-    H5Tset_size(type, H5T_VARIABLE);
-    H5Tset_cset(type, H5T_CSET_UTF8);
-    std::vector<char*> raw(size[0]);
-    read(set, type, raw.data(), size[0], name);
-    v.clear();
-    for (auto* s : raw) {
-      v.emplace_back(s ? s : "");
-      H5free_memory(s);
-    }
-  }
-  void numbers(std::string_view name, std::vector<double>& v) override { list(name, H5T_NATIVE_DOUBLE, v); }
-  void integers(std::string_view name, std::vector<std::int64_t>& v) override { list(name, H5T_NATIVE_INT64, v); }
-  void bytes(std::string_view name, std::vector<std::uint8_t>& v) override { list(name, H5T_NATIVE_UINT8, v); }
+  void number(std::string_view name, double& v) override { scalar(name, H5T_NATIVE_DOUBLE, &v); }
+  void integer(std::string_view name, std::int64_t& v) override { scalar(name, H5T_NATIVE_INT64, &v); }
+  void text(std::string_view name, std::string& v) override { v = texts_in(name, 0).at(0); }
+  void texts(std::string_view name, std::vector<std::string>& v) override { v = texts_in(name, 1); }
+  void numbers(std::string_view name, std::vector<double>& v) override { entries(name, H5T_NATIVE_DOUBLE, v); }
+  void integers(std::string_view name, std::vector<std::int64_t>& v) override { entries(name, H5T_NATIVE_INT64, v); }
+  void bytes(std::string_view name, std::vector<std::uint8_t>& v) override { entries(name, H5T_NATIVE_UINT8, v); }
   void matrix(std::string_view name, Eigen::MatrixXd& v) override {
     const Handle set = open(name);
     const auto size = shape(set, 2, name);
@@ -175,16 +206,56 @@ class Hdf5Reader final : public Hdf5Archive {
     read(set, H5T_NATIVE_DOUBLE, rows.data(), size[0] * size[1], name);
     v = rows;
   }
+  void matrices(std::string_view name, std::vector<Eigen::MatrixXd>& v) override {
+    v.clear();
+    if (is_group(name)) {
+      std::size_t size = 0;
+      return list(name, size, [&](std::size_t i) { matrix(std::to_string(i), v.emplace_back()); });
+    }
+    const Handle set = open(name);
+    const auto size = shape(set, 3, name);
+    std::vector<double> all(size[0] * size[1] * size[2]);
+    read(set, H5T_NATIVE_DOUBLE, all.data(), all.size(), name);
+    for (hsize_t i = 0; i < size[0]; ++i)
+      v.emplace_back(Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+          all.data() + i * size[1] * size[2], static_cast<Eigen::Index>(size[1]), static_cast<Eigen::Index>(size[2])));
+  }
+  bool present(std::string_view name, bool) override {
+    return H5Lexists(group(), std::string(name).c_str(), H5P_DEFAULT) > 0;
+  }
   void enter(std::string_view name) override {
     const std::string what = place(name) + ": is missing";
     push(name, Handle(H5Gopen2(group(), std::string(name).c_str(), H5P_DEFAULT), H5Gclose, what));
   }
 
  private:
-  void attribute(std::string_view name, hid_t type, void* data) {
-    const std::string what = place(name) + ": is missing or cannot be read";
-    const Handle attr(H5Aopen(group(), std::string(name).c_str(), H5P_DEFAULT), H5Aclose, what);
-    if (H5Aread(attr, type, data) < 0) throw std::runtime_error(what);
+  void scalar(std::string_view name, hid_t type, void* data) {
+    const Handle set = open(name);
+    shape(set, 0, name);
+    read(set, type, data, 1, name);
+  }
+  /// Texts of a dataset of no or one dimension.
+  std::vector<std::string> texts_in(std::string_view name, int dimensions) {
+    const Handle set = open(name);
+    hsize_t count = 1;
+    for (const auto n : shape(set, dimensions, name)) count *= n;
+    const Handle kept(H5Dget_type(set), H5Tclose, place(name));
+    if (H5Tget_class(kept) != H5T_STRING || H5Tis_variable_str(kept))
+      throw std::runtime_error(place(name) + ": does not hold texts of fixed length");
+    const std::size_t length = H5Tget_size(kept);
+    std::string raw(length * count, '\0');
+    read(set, text_type(length), raw.data(), count, name);
+    std::vector<std::string> all;
+    for (hsize_t i = 0; i < count; ++i) {
+      const std::string padded = raw.substr(i * length, length);
+      all.push_back(padded.substr(0, padded.find_last_not_of('\0') + 1));
+    }
+    return all;
+  }
+  bool is_group(std::string_view name) const {
+    H5O_info_t info;
+    return H5Oget_info_by_name(group(), std::string(name).c_str(), &info, H5P_DEFAULT) >= 0 &&
+           info.type == H5O_TYPE_GROUP;
   }
   Handle open(std::string_view name) {
     return {H5Dopen2(group(), std::string(name).c_str(), H5P_DEFAULT), H5Dclose, place(name) + ": is missing"};
@@ -202,7 +273,7 @@ class Hdf5Reader final : public Hdf5Archive {
       throw std::runtime_error(place(name) + ": cannot be read: the file is damaged");
   }
   template <class T>
-  void list(std::string_view name, hid_t type, std::vector<T>& v) {
+  void entries(std::string_view name, hid_t type, std::vector<T>& v) {
     const Handle set = open(name);
     const auto size = shape(set, 1, name);
     v.resize(size[0]);
@@ -242,6 +313,16 @@ class HashArchive final : public Archive {
     integer("rows", rows);
     block(name, 'm', v.data(), static_cast<std::size_t>(v.size()), sizeof(double));
   }
+  void matrices(std::string_view name, std::vector<Eigen::MatrixXd>& v) override {
+    enter(name);
+    for (auto& m : v) matrix("", m);
+    leave();
+  }
+  bool present(std::string_view name, bool value) override {
+    std::int64_t there = value;
+    integer(name, there);
+    return value;
+  }
   void enter(std::string_view name) override { block(name, '{', nullptr, 0, 0); }
   void leave() override { block("", '}', nullptr, 0, 0); }
 
@@ -262,6 +343,42 @@ class HashArchive final : public Archive {
 
 std::unique_ptr<Archive> hdf5_writer(const std::string& path) { return std::make_unique<Hdf5Writer>(path); }
 std::unique_ptr<Archive> hdf5_reader(const std::string& path) { return std::make_unique<Hdf5Reader>(path); }
+
+namespace detail {
+
+Columns::Column& Columns::column(std::string_view name) {
+  for (auto& c : columns_)
+    if (c.name == name) return c;
+  return columns_.emplace_back(Column{std::string(name), "", {}, 0});
+}
+
+template <class T>
+void Columns::cell(std::string_view name, T& value) {
+  auto& c = column(name);
+  if (stage_ == Stage::learn) c.cells = std::vector<T>();
+  if (stage_ == Stage::collect) std::get<std::vector<T>>(c.cells).push_back(value);
+  if (stage_ == Stage::hand_out) value = std::get<std::vector<T>>(c.cells).at(c.handed_out++);
+}
+
+void Columns::note(std::string_view member, std::string_view what, std::string_view text) {
+  if (what == "unit") column(member).unit = text;
+}
+
+void Columns::visit(Archive& ar) {
+  for (auto& c : columns_) std::visit([&](auto& cells) { ar(c.name, cells, c.unit); }, c.cells);
+  for (const auto& c : columns_)
+    if (std::visit([](const auto& cells) { return cells.size(); }, c.cells) != rows())
+      throw std::runtime_error(
+          fmt::format("the columns \"{}\" and \"{}\" of a file differ in length", columns_.front().name, c.name));
+}
+
+std::size_t Columns::rows() const {
+  return columns_.empty() ? 0 : std::visit([](const auto& cells) { return cells.size(); }, columns_.front().cells);
+}
+
+void Columns::refuse() { throw std::logic_error("a row holds numbers and texts alone"); }
+
+}  // namespace detail
 
 Key content_key(const std::function<void(Archive&)>& visit) {
   HashArchive hash;

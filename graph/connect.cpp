@@ -100,7 +100,7 @@ class Connector {
       return false;
     }
     const auto& type = port_spec(*source.port).type;
-    if (type != spec.type) {
+    if (spec.type != any_type && type != spec.type) {
       diagnostics_.error(json.place, fmt::format("{} takes {}, but \"{}\" gives {}", subject, spec.type.name,
                                                  port_name(*source.port), type.name));
       return false;

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "graph/provenance.h"
+
 namespace talkgraph {
 
 /// Thrown out of a node by Context::check_cancelled.
@@ -22,6 +24,7 @@ class Context {
  public:
   std::string item;                         ///< key of the item, empty for a node that runs once
   std::filesystem::path folder = ".";       ///< the run folder: files that a node writes go below it
+  Provenance provenance;                    ///< only for a node that asks for it
   std::function<void(double)> on_progress;  ///< share done, 0..1
   std::function<void(std::string_view)> on_log;
   std::function<void(std::string_view)> on_warning;

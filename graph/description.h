@@ -60,9 +60,10 @@ struct PortKind {
 /// One argument of a call operator: what it takes from the inputs.
 template <class A>
 struct Argument {
-  static_assert(
-      std::is_lvalue_reference_v<A> && std::is_const_v<std::remove_reference_t<A>>,
-      "a node takes its inputs as const A&, const Collected<A>&, const A*, and may take Random& and Context&");
+  static_assert(std::is_lvalue_reference_v<A> && std::is_const_v<std::remove_reference_t<A>>,
+                "a node takes its inputs as const A&, const Collected<A>&, const A*, const Value&, and may take "
+                "Random&, Context& "
+                "and const Provenance&");
   using T = std::remove_cvref_t<A>;
   static constexpr bool is_port = true;
   static constexpr PortKind port() {
@@ -104,6 +105,18 @@ struct Argument<const T*> {
 };
 
 template <>
+struct Argument<const Value&> {
+  static constexpr bool is_port = true;
+  static constexpr PortKind port() { return {any_type}; }
+  static Value take(const Input& in) { return in.value; }
+  static const Value& give(const Value& held) { return held; }
+};
+
+template <>
+struct Argument<const Provenance&> {
+  static constexpr bool is_port = false;
+};
+template <>
 struct Argument<Context&> {
   static constexpr bool is_port = false;
 };
@@ -127,6 +140,7 @@ struct Ports<std::tuple<A...>> {
     return all;
   }();
   static constexpr bool use_random = (std::is_same_v<A, Random&> || ...);
+  static constexpr bool use_provenance = (std::is_same_v<A, const Provenance&> || ...);
 };
 
 /// Throws std::logic_error if the call operator takes no further input.
@@ -153,6 +167,8 @@ decltype(auto) invoke(const N& node, std::tuple<A...>*, std::span<const Input> i
   const auto give = [&]<class X, class Held>(std::type_identity<X>, const Held& h) -> X {
     if constexpr (std::is_same_v<X, Context&>)
       return context;
+    else if constexpr (std::is_same_v<X, const Provenance&>)
+      return context.provenance;
     else if constexpr (std::is_same_v<X, Random&>)
       return random;
     else
@@ -300,6 +316,7 @@ NodeType Description<N>::finish() && {
   detail::check_described(type_, Ports::kinds.size());
   type_.makes_stream = makes_stream;
   type_.uses_random = Ports::use_random;
+  type_.uses_provenance = Ports::use_provenance;
   type_.parameters = parameters_.specs();
   auto specs = std::make_shared<const std::vector<ParameterSpec>>(type_.parameters);
   type_.make = [specs, getters = getters_](const LocatedJson* params, const Place& place, const std::string& subject,

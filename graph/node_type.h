@@ -56,8 +56,9 @@ struct NodeType {
   std::vector<ParameterSpec> parameters;
   bool makes_stream = false;
   bool uses_random = false;
-  bool stored = false;  ///< its results are worth keeping on disk
-  bool sink = false;    ///< runs for its effect, even if nothing reads its outputs
+  bool uses_provenance = false;  ///< what it writes says how it came about
+  bool stored = false;           ///< its results are worth keeping on disk
+  bool sink = false;             ///< runs for its effect, even if nothing reads its outputs
   /// Complaints name the node as `subject` ("node \"mfcc\"").
   std::function<std::unique_ptr<Functor>(const LocatedJson* params, const Place& place, const std::string& subject,
                                          Diagnostics&)>

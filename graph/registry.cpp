@@ -8,7 +8,7 @@ void Registry::add(NodeType type) {
   const auto name = type.name;
   for (const auto* ports : {&type.inputs, &type.outputs})
     for (const auto& port : *ports)
-      if (std::find(port_types_.begin(), port_types_.end(), port.type) == port_types_.end())
+      if (port.type != any_type && std::find(port_types_.begin(), port_types_.end(), port.type) == port_types_.end())
         port_types_.push_back(port.type);
   if (!types_.emplace(name, std::move(type)).second) throw std::logic_error("two nodes of type " + name);
 }

@@ -26,6 +26,9 @@ struct PortType {
 template <class T>
 inline constexpr PortType port_type{};
 
+/// Of an input that takes a value of whatever type, as `const Value&`.
+inline constexpr PortType any_type{"any", 1};
+
 template <class T>
 concept Port = !port_type<T>.name.empty();
 

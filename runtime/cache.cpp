@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raised when the layout of entries or the making of keys changes: older entries are then out of reach.
-constexpr const char* version = "v1";
+constexpr const char* version = "v2";
 
 std::string read_text(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -133,6 +133,7 @@ Context Caller::context(int n, const std::string& item) const {
   Context context;
   context.item = item;
   context.folder = options_.folder;
+  if (node(n).type->uses_provenance) context.provenance = provenance(graph_, n);
   context.cancel = options_.cancel;
   context.stop = &stop_;
   context.on_progress = [this, n, item](double share) {

@@ -30,17 +30,27 @@ Json canonical(const Json& params, const std::vector<ParameterSpec>& specs) {
   return out;
 }
 
+std::string name_of(const PortType& type) { return fmt::format("{} {}", type.name, type.version); }
+
+/// The type of what arrives at an input: of its source, where the input takes any.
+PortType taken(const Graph& graph, const Graph::Node& node, std::size_t port) {
+  const auto& type = node.type->inputs[port].type;
+  if (type != any_type) return type;
+  const auto& source = node.inputs[port].sources.front();
+  return graph.nodes[static_cast<std::size_t>(source.node)].type->outputs[static_cast<std::size_t>(source.port)].type;
+}
+
 }  // namespace
 
 Json recipe(const Graph& graph, int index) {
   const auto& node = graph.nodes[static_cast<std::size_t>(index)];
   Json out = {{"type", node.type->name}, {"version", node.type->version}};
-  for (const auto& port : node.type->inputs)
-    out["inputs"][port.name] = fmt::format("{} {}", port.type.name, port.type.version);
-  for (const auto& port : node.type->outputs)
-    out["outputs"][port.name] = fmt::format("{} {}", port.type.name, port.type.version);
+  for (std::size_t p = 0; p < node.type->inputs.size(); ++p)
+    out["inputs"][node.type->inputs[p].name] = name_of(taken(graph, node, p));
+  for (const auto& port : node.type->outputs) out["outputs"][port.name] = name_of(port.type);
   out["params"] = canonical(node.functor->parameters(), node.type->parameters);
   if (node.type->uses_random) out["seed"] = graph.seed;
+  if (node.type->uses_provenance) out["provenance"] = KeyMaker().add(provenance(graph, index).graph).key().str();
   return out;
 }
 

@@ -8,12 +8,14 @@
 namespace talkgraph {
 
 Artifact SaveModel::operator()(const AppearanceModel& face, const BaseClip& base, const Vlmm& contexts,
-                               const Ssgpdm& states, const Track& mean, Context& context) const {
+                               const Ssgpdm& states, const Track& mean, const Provenance& made,
+                               Context& context) const {
   TalkingFace all{face, base, contexts, states, mean, speak.json};
   std::string format = model_format;
   OutputFile file(context.folder / name);
   {
     const auto ar = hdf5_writer(file.part());
+    note(*ar, made);
     (*ar)("format", format);
     (*ar)("model", all);
   }

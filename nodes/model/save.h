@@ -6,18 +6,18 @@
 
 namespace talkgraph {
 
-/// Writes a talking face to one HDF5 file, with the graph that speaks with it.
+/// Writes a talking face to one HDF5 file, with the graph that speaks with it and the one that made it.
 struct SaveModel {
   std::string name = "model.h5";  ///< file below the run folder
   GraphText speak;                ///< graph with the nodes `recordings` and `model`, which `talkgraph speak` sets
 
   Artifact operator()(const AppearanceModel& face, const BaseClip& base, const Vlmm& contexts, const Ssgpdm& states,
-                      const Track& mean, Context& context) const;
+                      const Track& mean, const Provenance& made, Context& context) const;
 };
 void describe(Description<SaveModel>& d);
 
 /// The format marker in every model file.
-inline constexpr const char* model_format = "talkgraph model 1";
+inline constexpr const char* model_format = "talkgraph model 2";
 
 /// Throws std::runtime_error if the file is missing, foreign or damaged.
 TalkingFace load_model(const std::string& file);

@@ -46,7 +46,7 @@ void fields(Archive& ar, FitLevel& f) {
 
 void fields(Archive& ar, AppearanceModel& m) {
   ar("scheme", m.scheme);
-  ar("mean_shape", m.mean_shape);
+  ar("mean_shape", m.mean_shape, "pixel");
   ar("triangles", m.triangles);
   ar("shape_modes", m.shape_modes);
   ar("shape_variances", m.shape_variances);

@@ -14,6 +14,8 @@ namespace talkgraph {
 struct Pose {
   double scale = 1, angle = 0, dx = 0, dy = 0;
 };
+template <>
+inline constexpr bool is_row<Pose> = true;
 void fields(Archive& ar, Pose& p);
 
 /// An appearance model followed through a clip; vectors have one entry a frame.

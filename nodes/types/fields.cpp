@@ -1,4 +1,5 @@
-#include <stdexcept>
+#include <functional>
+#include <memory>
 
 #include "nodes/types/audio.h"
 #include "nodes/types/face_track.h"
@@ -10,16 +11,33 @@
 #include "nodes/types/track.h"
 
 namespace talkgraph {
+namespace {
+
+/// Says on a member with one entry a frame when its frames are.
+void note_frames(Archive& ar, std::string_view member, Rational rate, double start) {
+  ar.note(member, "rate_hz", rate.value());
+  ar.note(member, "start_s", start);
+}
+
+/// Loaded sound and pictures, as a recording gives them.
+template <class T>
+std::function<T()> giving(T value) {
+  return [held = std::make_shared<const T>(std::move(value))] { return *held; };
+}
+
+}  // namespace
 
 void fields(Archive& ar, Audio& a) {
   ar("samples", a.samples);
-  ar("rate", a.rate);
+  ar("rate", a.rate, "Hz");
+  ar.note("samples", "rate_hz", a.rate);
 }
 
 void fields(Archive& ar, Track& t) {
   ar("values", t.values);
-  ar("rate", t.rate);
-  ar("start", t.start);
+  ar("rate", t.rate, "Hz");
+  ar("start", t.start, "s");
+  note_frames(ar, "values", t.rate, t.start);
   ar("names", t.names);
   ar("lost", t.lost);
 }
@@ -28,8 +46,8 @@ void fields(Archive& ar, Mask& m) { ar("frames", m.frames); }
 
 void fields(Archive& ar, Interval& i) {
   ar("label", i.label);
-  ar("start", i.start);
-  ar("end", i.end);
+  ar("start", i.start, "s");
+  ar("end", i.end, "s");
 }
 
 void fields(Archive& ar, PhoneTrack& p) { ar("phones", p.phones); }
@@ -38,30 +56,34 @@ void fields(Archive& ar, Transcript& t) { ar("text", t.text); }
 
 void fields(Archive& ar, FrameLabels& l) {
   ar("labels", l.labels);
-  ar("rate", l.rate);
+  ar("rate", l.rate, "Hz");
+  note_frames(ar, "labels", l.rate, 0);
 }
 
 void fields(Archive& ar, LandmarkTrack& l) {
-  std::vector<Eigen::MatrixXd> frames(l.frames.begin(), l.frames.end());
-  ar("frames", frames);
-  if (ar.loading()) l.frames.assign(frames.begin(), frames.end());
-  ar("rate", l.rate);
+  ar("frames", l.frames, "pixel");
+  ar("rate", l.rate, "Hz");
+  note_frames(ar, "frames", l.rate, 0);
   ar("scheme", l.scheme);
 }
 
 void fields(Archive& ar, Recording& r) {
-  if (!ar.hashing()) throw std::logic_error("recording " + r.id + ": a recording is a handle; store its parts instead");
   ar("id", r.id);
   ar("split", r.split);
-  if (r.key) {
+  if (ar.hashing() && r.key) {
     Key key = r.key();
     ar("key", key);
   } else {
-    Audio audio = r.audio();
+    Audio audio = r.audio ? r.audio() : Audio();
     ar("audio", audio);
     std::optional<Video> video;
     if (r.video) video = r.video();
     ar("video", video);
+    if (ar.loading()) {
+      r.audio = giving(std::move(audio));
+      r.video = video ? giving(std::move(*video)) : nullptr;
+      r.key = nullptr;
+    }
   }
   ar("visual", r.visual);
   ar("transcript", r.transcript);
@@ -72,9 +94,9 @@ void fields(Archive& ar, Recording& r) {
 
 void fields(Archive& ar, Pose& p) {
   ar("scale", p.scale);
-  ar("angle", p.angle);
-  ar("dx", p.dx);
-  ar("dy", p.dy);
+  ar("angle", p.angle, "rad");
+  ar("dx", p.dx, "pixel");
+  ar("dy", p.dy, "pixel");
 }
 
 void fields(Archive& ar, FaceTrack& f) {
@@ -82,23 +104,22 @@ void fields(Archive& ar, FaceTrack& f) {
   ar("poses", f.poses);
   ar("gain", f.gain);
   ar("offset", f.offset);
-  ar("residual", f.residual);
+  ar("residual", f.residual, "grey level");
   ar("lost", f.lost);
-  std::vector<Eigen::MatrixXd> shapes(f.shapes.begin(), f.shapes.end());
-  ar("shapes", shapes);
-  if (ar.loading()) f.shapes.assign(shapes.begin(), shapes.end());
+  ar("shapes", f.shapes, "pixel");
+  note_frames(ar, "shapes", f.parameters.rate, f.parameters.start);
 }
 
 void fields(Archive& ar, Segment& s) {
   ar("label", s.label);
-  ar("start", s.start);
-  ar("length", s.length);
+  ar("start", s.start, "frame");
+  ar("length", s.length, "frame");
 }
 
 void fields(Archive& ar, SegmentTrack& s) {
   ar("segments", s.segments);
   ar("frames", s.frames);
-  ar("rate", s.rate);
+  ar("rate", s.rate, "Hz");
 }
 
 void fields(Archive& ar, StateData& s) {
@@ -112,10 +133,30 @@ void fields(Archive& ar, Table& t) {
   ar("corner", t.corner);
   ar("columns", t.columns);
   ar("rows", t.rows);
-  ar("cells", t.cells);
+  Eigen::MatrixXd cells;
+  if (!ar.loading()) cells.resize(std::ssize(t.rows), std::ssize(t.columns));
+  for (Eigen::Index r = 0; r < cells.rows(); ++r)
+    for (Eigen::Index c = 0; c < cells.cols(); ++c)
+      cells(r, c) = t.cells.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
+  ar("cells", cells);
+  if (!ar.loading()) return;
+  t.cells.clear();
+  for (const auto row : cells.rowwise()) t.cells.emplace_back(row.begin(), row.end());
 }
 
-void fields(Archive& ar, Scores& s) { ar("values", s.values); }
+void fields(Archive& ar, Scores& s) {
+  std::vector<std::string> names;
+  std::vector<double> values;
+  for (const auto& [name, value] : s.values) {
+    names.push_back(name);
+    values.push_back(value);
+  }
+  ar("names", names);
+  ar("values", values);
+  if (!ar.loading()) return;
+  s.values.clear();
+  for (std::size_t i = 0; i < names.size(); ++i) s.values[names[i]] = values.at(i);
+}
 
 void fields(Archive& ar, Plot& p) {
   ar("title", p.title);

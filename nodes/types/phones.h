@@ -13,6 +13,8 @@ struct Interval {
   double start = 0;
   double end = 0;
 };
+template <>
+inline constexpr bool is_row<Interval> = true;
 void fields(Archive& ar, Interval& i);
 
 /// Phones with their times, in order, without gaps or overlaps. Labels are

@@ -4,7 +4,7 @@ namespace talkgraph {
 
 void fields(Archive& ar, Prototypes& p) {
   ar("images", p.images);
-  ar("shapes", p.shapes);
+  ar("shapes", p.shapes, "pixel");
   ar("scheme", p.scheme);
 }
 

@@ -14,6 +14,8 @@ struct Segment {
   std::int64_t start = 0;  ///< first frame
   std::int64_t length = 0;
 };
+template <>
+inline constexpr bool is_row<Segment> = true;
 void fields(Archive& ar, Segment& s);
 
 /// Non-overlapping segments in time order that cover every frame (docs/method.md §5).

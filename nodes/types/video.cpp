@@ -85,20 +85,24 @@ void fields(Archive& ar, Video& v) {
   }
   Rational rate = v.source ? v.source->rate() : Rational(25);
   std::string name = v.source ? v.source->name() : "";
-  ar("rate", rate);
+  ar("rate", rate, "Hz");
   ar("name", name);
   ar("damaged", v.damaged);
-  std::vector<Image> images;
-  if (!ar.loading() && v.source)
-    for (auto& frame : v.read_all()) images.push_back({frame});
-  ar("frames", images);
-  if (ar.loading()) {
-    std::vector<cv::Mat> frames;
-    for (auto& image : images) frames.push_back(image.pixels);
-    auto damaged = std::move(v.damaged);
-    v = video_from_frames(std::move(frames), rate, name);
-    v.damaged = std::move(damaged);
-  }
+  const auto reader = !ar.loading() && v.source ? v.source->open() : nullptr;
+  auto size = reader ? static_cast<std::size_t>(v.source->frames()) : 0;
+  std::vector<cv::Mat> frames;
+  ar.list("frames", size, [&](std::size_t i) {
+    Image image;
+    if (reader && !reader->next(image.pixels))
+      throw std::runtime_error(name + ": ends before its last frame, " + std::to_string(size - 1));
+    ar(std::to_string(i), image);
+    if (ar.loading()) frames.push_back(image.pixels);
+  });
+  ar.note("frames", "rate_hz", rate.value());
+  if (!ar.loading()) return;
+  auto damaged = std::move(v.damaged);
+  v = video_from_frames(std::move(frames), rate, name);
+  v.damaged = std::move(damaged);
 }
 
 void fields(Archive& ar, Image& i) {

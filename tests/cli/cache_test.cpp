@@ -57,7 +57,7 @@ TEST(CacheCommand, DamagedEntriesAreNamedAndRemoved) {
   const Key key = KeyMaker().add("k").key();
   cache.store(key, {{"recipe", {{"type", "toy"}}}}, {}, {});
   EXPECT_THAT(cache_info(cache), HasSubstr("toy"));
-  folder.write("v1/" + key.str().substr(0, 2) + "/" + key.str() + "/stray", "x");
+  folder.write("v2/" + key.str().substr(0, 2) + "/" + key.str() + "/stray", "x");
   EXPECT_EQ(cache_verify(cache), 1u);
   EXPECT_EQ(cache.entries().size(), 0u);
 }

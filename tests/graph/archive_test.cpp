@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "tests/temporary_folder.h"
 
@@ -16,6 +18,18 @@ struct Part {
 void fields(Archive& ar, Part& p) {
   ar("d", p.d);
   ar("list", p.list);
+}
+struct Stretch {
+  std::string label;
+  double start = 0;
+  std::int64_t count = 0;
+};
+template <>
+inline constexpr bool is_row<Stretch> = true;
+void fields(Archive& ar, Stretch& s) {
+  ar("label", s.label);
+  ar("start", s.start, "s");
+  ar("count", s.count);
 }
 struct Whole {
   std::int64_t i = 0;
@@ -30,6 +44,8 @@ struct Whole {
   std::optional<Part> some, none;
   std::vector<Part> parts;
   std::map<std::string, Part> named;
+  std::vector<Stretch> rows, no_rows;
+  std::vector<Eigen::MatrixXd> alike, unlike, no_matrices;
 };
 void fields(Archive& ar, Whole& w) {
   ar("i", w.i);
@@ -45,6 +61,11 @@ void fields(Archive& ar, Whole& w) {
   ar("none", w.none);
   ar("parts", w.parts);
   ar("named", w.named);
+  ar("rows", w.rows);
+  ar("no_rows", w.no_rows);
+  ar("alike", w.alike);
+  ar("unlike", w.unlike);
+  ar("no_matrices", w.no_matrices);
 }
 
 namespace {
@@ -62,6 +83,9 @@ Whole example() {
   w.some = Part{1.5, {1, 2}};
   w.parts = {Part{2, {}}, Part{3, {4}}};
   w.named = {{"x/y", Part{5, {}}}};
+  w.rows = {{"long label", 0.5, 3}, {"", -1, 4}};
+  w.alike = {Eigen::MatrixXd::Random(2, 3), Eigen::MatrixXd::Random(2, 3)};
+  w.unlike = {Eigen::MatrixXd::Random(2, 3), Eigen::MatrixXd(0, 3)};
   return w;
 }
 
@@ -80,6 +104,8 @@ TEST_F(ArchiveFile, RestoresEveryKindOfMember) {
   (*hdf5_writer(path))("whole", w);
   Whole back;
   back.none = Part{};
+  back.no_rows = {{"gone", 1, 1}};
+  back.named = {{"gone", {}}};
   (*hdf5_reader(path))("whole", back);
   EXPECT_EQ(hash(back), hash(w));
   EXPECT_EQ(back.matrix, w.matrix);
@@ -87,6 +113,22 @@ TEST_F(ArchiveFile, RestoresEveryKindOfMember) {
   EXPECT_EQ(back.rate, w.rate);
   EXPECT_EQ(back.some->list, w.some->list);
   EXPECT_EQ(back.named.at("x/y").d, 5);
+  EXPECT_EQ(back.named.size(), 1u);
+  ASSERT_EQ(back.rows.size(), 2u);
+  EXPECT_EQ(back.rows[0].label, "long label");
+  EXPECT_EQ(back.rows[1].count, 4);
+  EXPECT_TRUE(back.no_rows.empty());
+  EXPECT_EQ(back.alike, w.alike);
+  EXPECT_EQ(back.unlike, w.unlike);
+}
+
+TEST_F(ArchiveFile, TheSameValueGivesTheSameBytes) {
+  Whole w = example();
+  (*hdf5_writer(path))("whole", w);
+  const std::string first = folder.read("archive.h5");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // the times that HDF5 keeps are in seconds
+  (*hdf5_writer(path))("whole", w);
+  EXPECT_EQ(folder.read("archive.h5"), first);
 }
 
 TEST_F(ArchiveFile, SaysWhatIsWrong) {
@@ -118,6 +160,29 @@ TEST_F(ArchiveFile, SaysWhatIsWrong) {
   EXPECT_THROW(hdf5_writer("/nowhere/x.h5"), std::runtime_error);
 }
 
+TEST_F(ArchiveFile, ColumnsMustBeOfOneLength) {
+  struct Uneven {
+    std::vector<std::string> label = {"a"};
+    std::vector<double> start = {1, 2};
+    std::vector<std::int64_t> count = {1};
+  } uneven;
+  {
+    const auto ar = hdf5_writer(path);
+    (*ar)("label", uneven.label);
+    (*ar)("start", uneven.start);
+    (*ar)("count", uneven.count);
+  }
+  detail::Columns columns;
+  Stretch example;
+  fields(columns, example);
+  try {
+    columns.visit(*hdf5_reader(path));
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_STREQ(e.what(), "the columns \"label\" and \"start\" of a file differ in length");
+  }
+}
+
 TEST(Hash, TellsContentsApart) {
   Whole a = example(), b = example();
   EXPECT_EQ(hash(a), hash(b = a));
@@ -125,6 +190,12 @@ TEST(Hash, TellsContentsApart) {
   EXPECT_NE(hash(a), hash(b));
   b = a;
   b.texts = {"", "ab", "c"};
+  EXPECT_NE(hash(a), hash(b));
+  b = a;
+  b.rows[1].start = 0;
+  EXPECT_NE(hash(a), hash(b));
+  b = a;
+  std::swap(b.alike[0], b.alike[1]);
   EXPECT_NE(hash(a), hash(b));
   b = a;
   b.matrix = Eigen::Map<Eigen::MatrixXd>(a.matrix.data(), 5, 3);

@@ -72,8 +72,34 @@ void describe(Description<Count>& d) {
   d.param("to", &Count::to).at_least(0);
 }
 
+struct Note {
+  Number operator()(const Value& value, const Provenance& made, Context&) const {
+    return {static_cast<double>(value.type().type.name.size() + made.node.size())};
+  }
+};
+void describe(Description<Note>& d) {
+  d.type("test.note").summary("takes anything").sink();
+  d.input("value").output("size");
+}
+
 LocatedJson json(const std::string& text, Diagnostics& diagnostics) {
   return *parse_json(std::make_shared<SourceText>(SourceText{"test.json", text}), diagnostics);
+}
+
+TEST(Description, GivesAnyValueAndHowItCameAbout) {
+  Registry r;
+  r.add<Note>();
+  const NodeType& type = *r.find("test.note");
+  EXPECT_EQ(type.inputs.at(0).type, any_type);
+  EXPECT_TRUE(type.uses_provenance);
+  EXPECT_EQ(r.port_types(), std::vector<PortType>{port_type<Number>}) << "\"any\" is no type of a graph's input";
+  Diagnostics diagnostics;
+  const auto node = type.make(nullptr, {}, "node", diagnostics);
+  Context context;
+  context.provenance.node = "four";
+  Random random(1, "", "");
+  const std::vector<Input> inputs = {{Value::of(Number{1}), {}}};
+  EXPECT_EQ(node->call(inputs, context, random).at(0).get<Number>().x, 6 + 4);
 }
 
 TEST(Description, CallsAFunctorWithItsParameters) {

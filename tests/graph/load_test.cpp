@@ -57,6 +57,39 @@ TEST_F(Load, SortsNodesAndFindsDomains) {
   EXPECT_EQ(graph->nodes[0].functor->parameters()["to"], 4);
 }
 
+TEST_F(Load, AnInputOfAnyTypeTakesEveryPort) {
+  const auto graph = load(R"({ "nodes": {
+    "items": { "type": "toy.count" },
+    "word": { "type": "toy.spell", "in": { "n": "items" } },
+    "a": { "type": "toy.note", "in": { "value": "items" } },
+    "b": { "type": "toy.note", "in": { "value": "word" } } } })");
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_EQ(graph->nodes.size(), 4u);
+  expect_error(R"({ "nodes": { "a": { "type": "toy.note" } } })", "g.json:1:14", "input \"value\" (any) is not wired");
+  expect_error(
+      R"({ "inputs": { "x": "any" }, "nodes": { "a": { "type": "toy.note", "in": { "value": "inputs.x" } } } })",
+      "g.json:1:20", "any");
+}
+
+TEST_F(Load, ProvenanceIsWhatANodeDependsOnAndRunsAgain) {
+  const auto graph = load(R"({ "nodes": {
+    "items": { "type": "toy.count" },
+    "other": { "type": "toy.spell", "in": { "n": "total" } },
+    "total": { "type": "toy.sum", "in": { "all": "items" } },
+    "note": { "type": "toy.note", "in": { "value": "total" } } }, "outputs": { "other": "other" }, "seed": 5 })");
+  ASSERT_TRUE(graph) << diagnostics.str();
+  const auto index =
+      std::find_if(graph->nodes.begin(), graph->nodes.end(), [](const auto& n) { return n.name == "note"; });
+  const Provenance made = provenance(*graph, static_cast<int>(index - graph->nodes.begin()));
+  EXPECT_EQ(made.node, "note");
+  const auto again = load(made.graph);
+  ASSERT_TRUE(again) << diagnostics.str();
+  EXPECT_EQ(again->nodes.size(), 3u);
+  EXPECT_EQ(again->seed, 5u);
+  EXPECT_EQ(again->resolved["nodes"]["total"], graph->resolved["nodes"]["total"]);
+  EXPECT_EQ(again->resolved["outputs"], (Json{{"what", "note.what"}}));
+}
+
 TEST_F(Load, NullTakesNodesWiresAndOutputsAway) {
   const std::string text = R"({ "nodes": { "a": { "type": "toy.count" }, "b": { "type": "toy.count" },
     "c": { "type": "toy.add", "in": { "a": "a", "b": "a" } } }, "outputs": { "x": "c", "y": "b" } })";

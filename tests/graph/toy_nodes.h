@@ -38,6 +38,11 @@ struct Sum {
     return sum;
   }
 };
+struct Note {
+  Word operator()(const Value& value, const Provenance& made) const {
+    return {made.node + ": " + std::string(value.type().type.name)};
+  }
+};
 struct Spell {
   Word operator()(const Number& n) const { return {std::to_string(n.x)}; }
 };
@@ -76,6 +81,10 @@ inline void describe(Description<Sum>& d) {
   d.type("toy.sum").summary("adds up a stream");
   d.input("all").output("sum");
 }
+inline void describe(Description<Note>& d) {
+  d.type("toy.note").summary("takes anything").sink();
+  d.input("value").output("what");
+}
 inline void describe(Description<Spell>& d) {
   d.type("toy.spell").summary("writes a number");
   d.input("n").output("word");
@@ -87,6 +96,7 @@ inline Registry registry() {
   r.add<Constant>();
   r.add<Add>();
   r.add<Sum>();
+  r.add<Note>();
   r.add<Spell>();
   return r;
 }

@@ -34,7 +34,7 @@ class ModelFile : public testing::Test {
 
 TEST_F(ModelFile, ComesBackInItsParts) {
   const SaveModel save{"model.h5", {"{\"nodes\": {}}"}};
-  EXPECT_EQ(save(face, base, contexts, states, mean, context).path, "model.h5");
+  EXPECT_EQ(save(face, base, contexts, states, mean, {}, context).path, "model.h5");
   EXPECT_FALSE(std::filesystem::exists(file() + ".part"));
   const TalkingFace back = LoadModel{{file()}}();
   EXPECT_EQ(back.contexts.alphabet, contexts.alphabet);
@@ -59,7 +59,7 @@ TEST_F(ModelFile, SaysWhatIsWrongWithAFile) {
   std::string format = "talkgraph model 99";
   (*hdf5_writer(file()))("format", format);
   EXPECT_THAT(complaint(), HasSubstr("\"talkgraph model 99\""));
-  SaveModel{}(face, base, contexts, states, mean, context);
+  SaveModel{}(face, base, contexts, states, mean, {}, context);
   std::filesystem::resize_file(file(), std::filesystem::file_size(file()) / 2);
   EXPECT_THAT(complaint(), HasSubstr("model.h5"));
 }
