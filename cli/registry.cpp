@@ -17,6 +17,7 @@
 #include "nodes/speech/register.h"
 #include "nodes/sync/register.h"
 #include "nodes/voice/register.h"
+#include "nodes/write/register.h"
 #include "nodes/yardstick/register.h"
 
 namespace talkgraph::cli {
@@ -40,6 +41,7 @@ Registry all_nodes() {
   register_speech(r);
   register_sync(r);
   register_voice(r);
+  register_write(r);
   register_yardstick(r);
   return r;
 }

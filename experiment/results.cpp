@@ -9,8 +9,8 @@
 #include <map>
 #include <tuple>
 
-#include "nodes/report/files.h"
 #include "nodes/types/report.h"
+#include "nodes/write/text.h"
 
 namespace talkgraph {
 namespace {

@@ -1,10 +1,8 @@
 #include "nodes/media/register.h"
 
 #include "nodes/media/check_video.h"
-#include "nodes/media/encode.h"
 #include "nodes/media/resample.h"
 #include "nodes/media/video.h"
-#include "nodes/media/write_audio.h"
 
 namespace talkgraph {
 
@@ -12,8 +10,6 @@ void register_media(Registry& registry) {
   registry.add<OpenVideo>();
   registry.add<CheckVideo>();
   registry.add<Resample>();
-  registry.add<Encode>();
-  registry.add<WriteAudio>();
 }
 
 }  // namespace talkgraph

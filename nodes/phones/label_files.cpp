@@ -35,6 +35,16 @@ std::string quoted(const std::string& label) {
   return text + '"';
 }
 
+/// The inverse, of a text in quotes.
+std::string unquoted(std::string_view text) {
+  std::string label;
+  for (std::size_t i = 1; i + 1 < text.size(); ++i) {
+    label += text[i];
+    if (text[i] == '"' && text[i + 1] == '"') ++i;
+  }
+  return label;
+}
+
 /// Intervals with the gaps filled by empty ones, from 0 to `end`.
 std::vector<Interval> without_gaps(const std::vector<Interval>& intervals, double end) {
   std::vector<Interval> whole;
@@ -153,7 +163,10 @@ std::string htk_labels(const std::vector<Interval>& intervals) {
 
 std::string csv_labels(const std::vector<Interval>& intervals) {
   std::string text = "start,end,label\n";
-  for (const auto& i : intervals) text += fmt::format("{:.7g},{:.7g},{}\n", i.start, i.end, i.label);
+  for (const auto& i : intervals) {
+    const bool plain = i.label.find_first_of(",\"") == std::string::npos;
+    text += fmt::format("{:.9g},{:.9g},{}\n", i.start, i.end, plain ? i.label : quoted(i.label));
+  }
   return text;
 }
 
@@ -207,6 +220,7 @@ std::vector<Interval> parse_csv_labels(std::string_view text, const std::string&
     std::getline(cells, start, ',');
     std::getline(cells, end, ',');
     std::getline(cells, label);
+    if (label.size() > 1 && label.front() == '"' && label.back() == '"') label = unquoted(label);
     const auto from = number(start), to = number(end);
     if (!from || !to || label.empty()) complain(name, n, "\"start,end,label\" is expected, times in seconds");
     append(intervals, {label, *from, *to}, name, n);

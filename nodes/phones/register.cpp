@@ -6,8 +6,6 @@
 #include "nodes/phones/masks.h"
 #include "nodes/phones/recognise.h"
 #include "nodes/phones/visemes.h"
-#include "nodes/phones/write_labels.h"
-#include "nodes/phones/write_visemes.h"
 
 namespace talkgraph {
 
@@ -19,8 +17,6 @@ void register_phones(Registry& registry) {
   registry.add<SpeechMask>();
   registry.add<WordMask>();
   registry.add<ToVisemes>();
-  registry.add<WriteVisemes>();
-  registry.add<WriteLabels>();
 }
 
 }  // namespace talkgraph

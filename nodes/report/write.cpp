@@ -1,8 +1,8 @@
 #include "nodes/report/write.h"
 
 #include "graph/output_file.h"
-#include "nodes/report/files.h"
 #include "nodes/report/page.h"
+#include "nodes/write/text.h"
 
 namespace talkgraph {
 

@@ -22,6 +22,40 @@ TEST(CacheCommand, WritesSizesForPeople) {
   EXPECT_EQ(size_text(20'000'000'000), "20 GB");
 }
 
+// What is exported says how it came about, so it is written again when that is another; else it is found.
+TEST(CacheCommand, ExportsFollowTheirProvenance) {
+  const test::TemporaryFolder folder;
+  write_audio(folder.path() / "tone.wav", Audio{Eigen::VectorXd::LinSpaced(1600, -0.5, 0.5), 16000});
+  const std::string graph = folder.write("g.json", R"({ "nodes": {
+      "files": { "type": "corpus.files", "params": { "files": ["tone.wav"] } },
+      "parts": { "type": "corpus.parts", "in": { "recording": "files" } },
+      "low": { "type": "media.resample", "in": { "audio": "parts.audio" }, "params": { "rate": 8000 } },
+      "sound": { "type": "write.hdf5", "in": { "value": "low" } },
+      "whole": { "type": "write.hdf5", "in": { "value": "files" } } } })");
+  RunCommand run;
+  run.quiet = run.cached = true;
+  run.cache = folder.path() / "cache";
+  const auto registry = all_nodes();
+  const auto calls = [&](const std::string& name) {
+    run.folder = folder.path() / name;
+    EXPECT_EQ(run_file(graph, run, registry), success);
+    std::map<std::string, int> all;
+    for (const auto& node : Json::parse(folder.read(name + "/run.json"))["nodes"]) all[node["name"]] = node["calls"];
+    return all;
+  };
+  EXPECT_EQ(calls("first")["sound"], 1);
+  Audio sound;
+  fields(*hdf5_reader(folder.file("first/hdf5/sound/tone.h5")), sound);
+  EXPECT_EQ(sound.samples.size(), 800);
+  Recording recording;
+  fields(*hdf5_reader(folder.file("first/hdf5/whole/tone.h5")), recording);
+  EXPECT_EQ(recording.audio().samples.size(), 1600);
+  EXPECT_EQ(calls("second")["sound"], 0);
+  EXPECT_EQ(folder.read("first/hdf5/sound/tone.h5"), folder.read("second/hdf5/sound/tone.h5"));
+  run.sets = {"seed=2"};
+  EXPECT_EQ(calls("third")["sound"], 1) << "the seed stands in its provenance";
+}
+
 // A run from another folder, of a graph whose node has another name, finds what the first one kept; its files are
 // restored as they were.
 TEST(CacheCommand, RunsShareWhatTheyKeep) {
@@ -32,7 +66,7 @@ TEST(CacheCommand, RunsShareWhatTheyKeep) {
     return folder.write(place + "/g.json", R"({ "nodes": {
       "files": { "type": "corpus.files", "params": { "files": ["tone.wav"] } },
       ")" + node + R"(": { "type": "corpus.parts", "in": { "recording": "files" } },
-      "write": { "type": "media.write_audio", "in": { "audio": ")" +
+      "write": { "type": "write.audio", "in": { "audio": ")" +
                                                node + R"(.audio" } } } })");
   };
   RunCommand run;
@@ -48,7 +82,7 @@ TEST(CacheCommand, RunsShareWhatTheyKeep) {
   for (const auto& node : record["nodes"]) EXPECT_EQ(node["calls"], node["type"] == "corpus.files" ? 1 : 0) << node;
   EXPECT_FALSE(folder.read("first/sound/tone.wav").empty());
   EXPECT_EQ(folder.read("first/sound/tone.wav"), folder.read("second/sound/tone.wav"));
-  EXPECT_THAT(cache_info(Cache(run.cache)), HasSubstr("media.write_audio"));
+  EXPECT_THAT(cache_info(Cache(run.cache)), HasSubstr("write.audio"));
 }
 
 TEST(CacheCommand, DamagedEntriesAreNamedAndRemoved) {
@@ -62,13 +96,12 @@ TEST(CacheCommand, DamagedEntriesAreNamedAndRemoved) {
   EXPECT_EQ(cache.entries().size(), 0u);
 }
 
-// What is kept must be such that it can be loaded.
-TEST(Nodes, WhatTheyKeepCanBeLoaded) {
+// What can be written must be such that it can be loaded.
+TEST(Nodes, WhatTheyGiveCanBeWrittenAndLoaded) {
   const test::TemporaryFolder folder;
   const Registry registry = all_nodes();
   for (const auto& name : registry.names()) {
     const NodeType& type = *registry.find(name);
-    if (!type.stored && !type.sink) continue;
     for (const auto& port : type.outputs) {
       const auto value = port.info->make();
       const std::string file = folder.file("value.h5");

@@ -6,7 +6,6 @@
 
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/resample.h"
-#include "nodes/media/write_audio.h"
 #include "tests/nodes/media/media_test.h"
 
 namespace talkgraph {
@@ -107,16 +106,6 @@ TEST_F(AudioFileTest, WritingClipsAndRefusesWhatDoesNotFit) {
   EXPECT_THAT(error_of([&] { write_audio(path("no/x.wav"), loud); }), HasSubstr("cannot be written"));
   loud.samples[0] = NAN;
   EXPECT_THROW(write_audio(path("x.wav"), loud), std::invalid_argument);
-}
-
-TEST_F(AudioFileTest, TheNodeWritesBelowTheRunFolder) {
-  Context context;
-  context.folder = folder_;
-  context.item = "u1";
-  const Artifact file = WriteAudio{}(tone(0.1, 16000), context);
-  EXPECT_EQ(file.path, "sound/u1.wav");
-  EXPECT_EQ(read_audio(path(file.path)).samples.size(), 1600);
-  EXPECT_FALSE(std::filesystem::exists(path(file.path) + ".part"));
 }
 
 TEST(Resample, KeepsTonesInPlaceAndRemovesAliases) {

@@ -3,7 +3,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "nodes/media/audio_file.h"
-#include "nodes/media/encode.h"
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/video.h"
 #include "tests/nodes/media/media_test.h"
@@ -17,11 +16,9 @@ using testing::HasSubstr;
 class VideoFileTest : public MediaTest {
  protected:
   std::string clip(int frames, ClipFormat format) {
-    Context context;
-    context.folder = folder_;
-    Encode node;
-    node.format = format;
-    return path(node(test_video(frames, 25), nullptr, context).path);
+    const std::string file = path(format == ClipFormat::mp4 ? "clip.mp4" : "clip.webm");
+    ffmpeg_encode(file, test_video(frames, 25), nullptr, {format, 18}, Context());
+    return file;
   }
 };
 

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "nodes/phones/write_labels.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph {
@@ -79,23 +78,6 @@ TEST(LabelFiles, TakeEmptyTracks) {
   EXPECT_EQ(htk_labels({}), "");
   EXPECT_TRUE(parse_htk_labels("", "x").empty());
   EXPECT_EQ(parse_text_grid(text_grid({{"phones", {}}}), "x").size(), 1u);
-}
-
-TEST(WriteLabels, WritesBelowTheRunFolder) {
-  const test::TemporaryFolder folder;
-  Context context;
-  context.folder = folder.path();
-  context.item = "clip1";
-  const Artifact file = WriteLabels{}({kPhones}, nullptr, context);
-  EXPECT_EQ(file.path, "labels/clip1.TextGrid");
-  EXPECT_EQ(parse_text_grid(folder.read(file.path), "x")[0].intervals, kPhones);
-  EXPECT_EQ((WriteLabels{LabelFormat::htk, "lab"}({kPhones}, nullptr, context).path), "lab/clip1.lab");
-}
-
-TEST(WriteLabels, SaysThatItCannotWrite) {
-  Context context;
-  context.folder = "/dev/null/x";
-  EXPECT_NE(error_of([&] { WriteLabels{}({kPhones}, nullptr, context); }).find("/dev/null/x"), std::string::npos);
 }
 
 }  // namespace

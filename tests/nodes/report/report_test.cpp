@@ -4,13 +4,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 
-#include "nodes/report/files.h"
+#include "nodes/plot/bars.h"
 #include "nodes/report/page.h"
 #include "nodes/report/write.h"
-#include "nodes/report/write_plot.h"
-#include "nodes/report/write_table.h"
-#include "nodes/report/write_track.h"
+#include "nodes/write/plot.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph {
@@ -27,14 +26,6 @@ class Report : public testing::Test {
   Context context;
   Table table{"scores", "method", {"acc", "n"}, {"a, \"b\"", "c"}, {{0.5, 3}, {NAN, 4}}};
 };
-
-TEST_F(Report, WritesTablesAsCsvAndJson) {
-  EXPECT_EQ((WriteTable{"t"}(table, context)).path, "t.csv");
-  EXPECT_EQ(read("t.csv"), "method,acc,n\n\"a, \"\"b\"\"\",0.5,3\nc,,4\n");
-  const Json json = Json::parse(read("t.json"));
-  EXPECT_EQ(json["rows"]["c"]["n"], 4);
-  EXPECT_TRUE(json["rows"]["c"]["acc"].is_null());
-}
 
 TEST_F(Report, WritesOnePageWithEverything) {
   WriteReport{"A <title>", "notes"}({{"scores", table}}, {{"p", {"plot", "<svg></svg>"}}},
@@ -74,42 +65,16 @@ TEST_F(Report, IsWrittenOfNothingAsWell) {
   EXPECT_EQ(read("metrics.json"), "{}\n");
 }
 
-TEST_F(Report, WritesPlots) {
-  const Plot plot{"p", "<svg></svg>"};
-  EXPECT_EQ((WritePlot{"one"}(plot, context)).path, "plots/one.svg");
-  EXPECT_EQ(read("plots/one.svg"), "<svg></svg>");
-  EXPECT_THROW(WritePlot{}(plot, context), std::invalid_argument);
-  context.item = "clip";
-  EXPECT_EQ(WritePlot{}(plot, context).path, "plots/clip.svg");
-}
-
-TEST_F(Report, WritesTracks) {
-  Track track;
-  track.values.resize(2, 2);
-  track.values << 0.1, 2, 1.0 / 3, -4;
-  Track named = track;
-  named.names = {"jaw", "lips"};
-  EXPECT_EQ(WriteTrack{}(track, nullptr, context).path, "tracks/track.csv");
-  EXPECT_EQ(read("tracks/track.csv"), "d0,d1\n0.1,2\n0.3333333333333333,-4\n");
-  context.item = "s1";
-  WriteTrack{"out"}(track, &named, context);
-  EXPECT_EQ(read("out/s1.csv").substr(0, 9), "jaw,lips\n");
-  named.names.pop_back();
-  WriteTrack{"out"}(track, &named, context);
-  EXPECT_EQ(read("out/s1.csv").substr(0, 6), "d0,d1\n");
-  track.values.resize(0, 2);
-  WriteTrack{}(track, nullptr, context);
-  EXPECT_EQ(read("tracks/s1.csv"), "d0,d1\n");
-}
-
-TEST_F(Report, SaysWhichFileCannotBeWritten) {
-  context.folder = folder.write("in_the_way", "x");
-  try {
-    WriteTable{"t"}(table, context);
-    FAIL();
-  } catch (const std::runtime_error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("in_the_way: this folder cannot be made"));
-  }
+TEST_F(Report, PlotsAreDrawnAsPictures) {
+  const PlotBars bars{{"acc"}};
+  const Plot plot = bars(Table{"t", "method", {"acc"}, {"a", "b"}, {{0.5}, {0.25}}});
+  WritePlot{"bars", "plots", PlotFormat::png, 1}(plot, context);
+  const cv::Mat picture = cv::imread(folder.file("plots/bars.png"));
+  ASSERT_FALSE(picture.empty());
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(picture, mean, deviation);
+  EXPECT_GT(mean[0], 100);
+  EXPECT_GT(deviation[0], 10) << "an empty picture";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "nodes/phones/write_visemes.h"
+#include "nodes/write/visemes.h"
 
 #include <fmt/format.h>
 
@@ -44,7 +44,7 @@ Artifact WriteVisemes::operator()(const PhoneTrack& phones, Context& context) co
 }
 
 void describe(Description<WriteVisemes>& d) {
-  d.type("phones.write_visemes").summary("writes mouth shapes in the formats of Rhubarb Lip Sync").sink();
+  d.type("write.visemes").summary("writes mouth shapes in the formats of Rhubarb Lip Sync").sink();
   d.input("phones", "with their times").output("file", "the viseme file");
   d.param("format", &WriteVisemes::format).doc("as rhubarb writes them with -f tsv or -f json");
   d.param("folder", &WriteVisemes::folder).doc("below the run folder");

@@ -1,8 +1,8 @@
-#include "nodes/report/write_track.h"
+#include "nodes/write/track.h"
 
 #include "graph/output_file.h"
-#include "nodes/report/files.h"
 #include "nodes/types/item_file.h"
+#include "nodes/write/text.h"
 
 namespace talkgraph {
 
@@ -15,7 +15,7 @@ Artifact WriteTrack::operator()(const Track& track, const Track* named, Context&
 }
 
 void describe(Description<WriteTrack>& d) {
-  d.type("report.write_track").summary("writes a track as CSV, a line a frame").sink();
+  d.type("write.track").summary("writes a track as CSV, a line a frame").sink();
   d.input("track", "what is written")
       .input("named", "a track that names the dimensions")
       .output("file", "the CSV file");

@@ -1,4 +1,4 @@
-#include "nodes/media/encode.h"
+#include "nodes/write/clip.h"
 
 #include "nodes/media/audio_file.h"
 #include "nodes/media/ffmpeg.h"
@@ -18,7 +18,7 @@ class EncodeTest : public MediaTest {
     context_.item = "clip";
   }
   std::string encode(const Video& video, const Audio* audio, ClipFormat format = ClipFormat::mp4) {
-    Encode node;
+    WriteClip node;
     node.format = format;
     return (folder_ / node(video, audio, context_).path).string();
   }
@@ -123,13 +123,13 @@ TEST_F(EncodeTest, TheSameInputGivesTheSameBytes) {
 }
 
 TEST_F(EncodeTest, NamesAndFolders) {
-  Encode node;
+  WriteClip node;
   node.prefix = "a-";
   node.suffix = "-b";
   context_.item = "s1/x";
   EXPECT_EQ(node(test_video(2, 25), nullptr, context_).path, "clips/a-s1_x-b.mp4");
   context_.item = "";
-  EXPECT_EQ(Encode{}(test_video(2, 25), nullptr, context_).path, "clips/clip.mp4");
+  EXPECT_EQ(WriteClip{}(test_video(2, 25), nullptr, context_).path, "clips/clip.mp4");
 }
 
 TEST_F(EncodeTest, NothingIsLeftOfAClipThatFails) {

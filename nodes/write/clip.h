@@ -17,7 +17,7 @@ namespace talkgraph {
 /// the format does not take its rate. A side of odd length is extended by its last row or
 /// column. The same input gives the same bytes. Throws std::runtime_error for a video
 /// without frames or a file that cannot be written; no half-written file is left.
-struct Encode {
+struct WriteClip {
   std::string folder = "clips";
   std::string prefix, suffix;
   ClipFormat format = ClipFormat::mp4;
@@ -25,6 +25,6 @@ struct Encode {
 
   Artifact operator()(const Video& video, const Audio* audio, Context& context) const;
 };
-void describe(Description<Encode>& d);
+void describe(Description<WriteClip>& d);
 
 }  // namespace talkgraph

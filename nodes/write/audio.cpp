@@ -1,4 +1,4 @@
-#include "nodes/media/write_audio.h"
+#include "nodes/write/audio.h"
 
 #include "graph/output_file.h"
 #include "nodes/types/item_file.h"
@@ -14,7 +14,7 @@ Artifact WriteAudio::operator()(const Audio& audio, Context& context) const {
 }
 
 void describe(Description<WriteAudio>& d) {
-  d.type("media.write_audio").summary("writes sound as a WAV file").sink();
+  d.type("write.audio").summary("writes sound as a WAV file").sink();
   d.input("audio", "what is written").output("file", "the WAV file");
   d.param("folder", &WriteAudio::folder).doc("below the run folder");
   d.param("prefix", &WriteAudio::prefix).doc("in front of the item's name");

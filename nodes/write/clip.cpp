@@ -1,4 +1,4 @@
-#include "nodes/media/encode.h"
+#include "nodes/write/clip.h"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +34,7 @@ Audio fitted(const Audio& audio, double seconds, ClipFormat format) {
 
 }  // namespace
 
-Artifact Encode::operator()(const Video& video, const Audio* audio, Context& context) const {
+Artifact WriteClip::operator()(const Video& video, const Audio* audio, Context& context) const {
   const auto frames = video.source ? video.source->frames() : 0;
   if (frames == 0) throw std::runtime_error("a clip without one frame cannot be encoded");
   const double seconds = static_cast<double>(frames) / video.source->rate().value();
@@ -48,16 +48,16 @@ Artifact Encode::operator()(const Video& video, const Audio* audio, Context& con
   return artifact;
 }
 
-void describe(Description<Encode>& d) {
-  d.type("media.encode").summary("writes a clip: pictures, and sound of the same length").sink();
+void describe(Description<WriteClip>& d) {
+  d.type("write.clip").summary("writes a clip as MP4 or WebM: pictures, and sound of the same length").sink();
   d.input("video", "the pictures")
       .input("audio", "padded with silence or cut to the length of the picture")
       .output("file", "the clip");
-  d.param("folder", &Encode::folder).doc("below the run folder");
-  d.param("prefix", &Encode::prefix).doc("in front of the item's name");
-  d.param("suffix", &Encode::suffix).doc("behind the item's name");
-  d.param("format", &Encode::format).doc("mp4: H.264 and AAC; webm: VP9 and Opus");
-  d.param("crf", &Encode::crf).within(0, 51).doc("constant rate factor: lower is better and larger");
+  d.param("folder", &WriteClip::folder).doc("below the run folder");
+  d.param("prefix", &WriteClip::prefix).doc("in front of the item's name");
+  d.param("suffix", &WriteClip::suffix).doc("behind the item's name");
+  d.param("format", &WriteClip::format).doc("mp4: H.264 and AAC; webm: VP9 and Opus");
+  d.param("crf", &WriteClip::crf).within(0, 51).doc("constant rate factor: lower is better and larger");
 }
 
 }  // namespace talkgraph

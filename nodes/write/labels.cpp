@@ -1,4 +1,9 @@
-#include "nodes/phones/write_labels.h"
+#include "nodes/write/labels.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
 
 #include "graph/output_file.h"
 #include "nodes/phones/label_files.h"
@@ -6,7 +11,27 @@
 
 namespace talkgraph {
 
+namespace {
+
+void check(const std::vector<Interval>& intervals, LabelFormat format) {
+  double last = 0;
+  for (const auto& i : intervals) {
+    // Negated, so that NaN is refused as well.
+    if (!(i.start >= last - 1e-6 && i.end >= i.start && std::isfinite(i.end)))
+      throw std::invalid_argument(fmt::format("the interval \"{}\" from {} s to {} s is not in order after {} s",
+                                              i.label, i.start, i.end, last));
+    if (format == LabelFormat::htk && (i.label.empty() || i.label.find_first_of(" \t\r\n") != std::string::npos))
+      throw std::invalid_argument(
+          fmt::format("an HTK file has one word a label, not \"{}\" (at {} s): write a textgrid", i.label, i.start));
+    last = i.end;
+  }
+}
+
+}  // namespace
+
 Artifact WriteLabels::operator()(const PhoneTrack& phones, const WordTrack* words, Context& context) const {
+  check(phones.phones, format);
+  if (words && format == LabelFormat::textgrid) check(words->words, format);
   const auto write = [&](const char* ending, const std::string& text) {
     const Artifact artifact = item_file(context, folder, ending, "phones");
     write_file(context.folder / artifact.path, text);
@@ -20,7 +45,7 @@ Artifact WriteLabels::operator()(const PhoneTrack& phones, const WordTrack* word
 }
 
 void describe(Description<WriteLabels>& d) {
-  d.type("phones.write_labels").summary("writes phones as HTK labels, Praat TextGrid or CSV").sink();
+  d.type("write.labels").summary("writes phones as HTK labels, Praat TextGrid or CSV").sink();
   d.input("phones", "with their times")
       .input("words", "a second tier of the TextGrid")
       .output("file", "the label file");

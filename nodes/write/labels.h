@@ -13,7 +13,9 @@ inline constexpr EnumNames<LabelFormat, 3> enum_names<LabelFormat>{
 
 /// Writes the phones of each utterance to FOLDER/ITEM.lab, .TextGrid or .csv below
 /// the run folder; a TextGrid holds the words, where given, as a second tier.
-/// A corpus manifest reads the files back.
+/// A corpus manifest reads the files back. Errors: the file cannot be written; intervals
+/// that are not in order, or whose times are not finite; for HTK, a label that is
+/// empty or has a space in it.
 struct WriteLabels {
   LabelFormat format = LabelFormat::textgrid;
   std::string folder = "labels";

@@ -1,17 +1,32 @@
-#include "nodes/report/files.h"
+#include "nodes/write/text.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 namespace talkgraph {
+
 std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
   return out + "\"";
 }
+
+namespace {
+
+void check_distinct(std::vector<std::string> names, const char* what) {
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice != names.end())
+    throw std::invalid_argument(
+        fmt::format("a table has two {} called \"{}\"; JSON keeps one of a name", what, *twice));
+}
+
+}  // namespace
 
 std::string to_csv(const Table& table) {
   std::string out = csv_text(table.corner);
@@ -39,6 +54,8 @@ std::string to_csv(const Track& track) {
 }
 
 std::string to_json(const Table& table) {
+  check_distinct(table.rows, "rows");
+  check_distinct(table.columns, "columns");
   nlohmann::ordered_json out = {
       {"title", table.title}, {"columns", table.columns}, {"rows", nlohmann::ordered_json::object()}};
   for (std::size_t r = 0; r < table.rows.size(); ++r) {

@@ -13,7 +13,8 @@ std::string csv_text(const std::string& text);
 std::string to_csv(const Table& table);
 /// A heading (the track's names, or d0, d1, ...) and a line a frame, every digit kept.
 std::string to_csv(const Track& track);
-/// {"title", "columns", "rows": {name: {column: number or null}}}
+/// {"title", "columns", "rows": {name: {column: number or null}}}. Throws std::invalid_argument if two rows, or two
+/// columns, have one name.
 std::string to_json(const Table& table);
 
 }  // namespace talkgraph

@@ -5,8 +5,8 @@
 
 namespace talkgraph {
 
-/// Writes a table as NAME.csv and NAME.json below the run folder. Errors: a file
-/// cannot be written.
+/// Writes a table as NAME.csv and NAME.json below the run folder, those of a stream as NAME/ITEM. Errors: a file
+/// cannot be written, two rows have one name.
 struct WriteTable {
   std::string name = "table";
 

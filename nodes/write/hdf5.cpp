@@ -1,0 +1,32 @@
+#include "nodes/write/hdf5.h"
+
+#include "graph/output_file.h"
+#include "nodes/types/item_file.h"
+
+namespace talkgraph {
+
+Artifact WriteHdf5::operator()(const Value& value, const Provenance& made, Context& context) const {
+  const std::string below = context.item.empty() ? folder : folder + "/" + made.node;
+  const Artifact artifact = item_file(context, below, ".h5", made.node);
+  const PortType& type = value.type().type;
+  OutputFile file(context.folder / artifact.path);
+  {
+    const auto ar = hdf5_writer(file.part());
+    ar->note("", "type", type.name);
+    ar->note("", "type_version", type.version);
+    ar->note("", "item", context.item);
+    note(*ar, made);
+    // An archive that saves does not change what it visits.
+    value.type().visit(*ar, const_cast<void*>(value.data()));
+  }
+  file.finish();
+  return artifact;
+}
+
+void describe(Description<WriteHdf5>& d) {
+  d.type("write.hdf5").summary("writes a value of any type as HDF5, for h5py, Octave and MATLAB").sink();
+  d.input("value", "whatever is wired").output("file", "the HDF5 file");
+  d.param("folder", &WriteHdf5::folder).doc("below the run folder");
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,33 @@
+#include "nodes/write/plot.h"
+
+#include <stdexcept>
+
+#include "graph/output_file.h"
+#include "nodes/types/item_file.h"
+#include "nodes/write/png.h"
+
+namespace talkgraph {
+
+Artifact WritePlot::operator()(const Plot& plot, Context& context) const {
+  if (name.empty() && context.item.empty())
+    throw std::invalid_argument("a plot that is not an item of a stream needs the parameter \"name\"");
+  const char* const ending = format == PlotFormat::svg ? ".svg" : ".png";
+  const std::string path = name.empty() ? item_file(context, folder, ending, "").path
+                                        : (std::filesystem::path(folder) / (name + ending)).string();
+  if (format == PlotFormat::svg)
+    write_file(context.folder / path, plot.svg);
+  else
+    write_png(context.folder / path, plot.svg, scale);
+  return {path, plot.title};
+}
+
+void describe(Description<WritePlot>& d) {
+  d.type("write.plot").summary("writes a plot as SVG or PNG").sink();
+  d.input("plot", "what is written").output("file", "the picture");
+  d.param("name", &WritePlot::name).doc("file name without its ending; of the item if empty");
+  d.param("folder", &WritePlot::folder).doc("below the run folder");
+  d.param("format", &WritePlot::format).doc("svg: scales; png: pixels");
+  d.param("scale", &WritePlot::scale).within(0.1, 20).doc("pixels of a PNG for one of the plot");
+}
+
+}  // namespace talkgraph
