@@ -5,7 +5,8 @@ namespace talkgraph::detail {
 void add_input(NodeType& type, std::span<const PortKind> kinds, std::string name, std::string doc) {
   const std::size_t next = type.inputs.size();
   if (next == kinds.size()) throw std::logic_error(type.name + ": more inputs described than the call operator takes");
-  type.inputs.push_back({std::move(name), std::move(doc), kinds[next].type, kinds[next].kind});
+  type.inputs.push_back(
+      {std::move(name), std::move(doc), kinds[next].type, kinds[next].kind, false, nullptr, kinds[next].cpp});
 }
 
 void add_output(NodeType& type, PortSpec spec) { type.outputs.push_back(std::move(spec)); }

@@ -6,6 +6,7 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 
 #include "graph/node_type.h"
@@ -55,24 +56,28 @@ struct unwrap_optional<std::optional<T>> {
 struct PortKind {
   PortType type;
   PortSpec::Kind kind = PortSpec::Kind::item;
+  const std::type_info* cpp = nullptr;
 };
+template <class T>
+constexpr PortKind port_kind(PortSpec::Kind kind) {
+  return {port_type<T>, kind, &typeid(T)};
+}
 
 /// One argument of a call operator: what it takes from the inputs.
 template <class A>
 struct Argument {
   static_assert(std::is_lvalue_reference_v<A> && std::is_const_v<std::remove_reference_t<A>>,
                 "a node takes its inputs as const A&, const Collected<A>&, const A*, const Value&, and may take "
-                "Random&, Context& "
-                "and const Provenance&");
+                "Random&, Context& and const Provenance&");
   using T = std::remove_cvref_t<A>;
   static constexpr bool is_port = true;
   static constexpr PortKind port() {
     if constexpr (is_collected<T>::value) {
       static_assert(Port<typename is_collected<T>::Element>, "specialise port_type for what is collected");
-      return {port_type<typename is_collected<T>::Element>, PortSpec::Kind::collected};
+      return port_kind<typename is_collected<T>::Element>(PortSpec::Kind::collected);
     } else {
       static_assert(Port<T>, "specialise port_type for the type of this input");
-      return {port_type<T>};
+      return port_kind<T>(PortSpec::Kind::item);
     }
   }
   /// Owns what the argument refers to while the operator runs.
@@ -99,7 +104,7 @@ template <class T>
 struct Argument<const T*> {
   static_assert(Port<T>, "specialise port_type for the type of this input");
   static constexpr bool is_port = true;
-  static constexpr PortKind port() { return {port_type<T>, PortSpec::Kind::optional}; }
+  static constexpr PortKind port() { return port_kind<T>(PortSpec::Kind::optional); }
   static std::shared_ptr<const T> take(const Input& in) { return in.value ? in.value.share<T>() : nullptr; }
   static const T* give(const std::shared_ptr<const T>& held) { return held.get(); }
 };
@@ -221,14 +226,14 @@ class Description {
   Description& sink() { return type_.sink = true, *this; }
 
   /// Names the next input port, in the order of the call operator's arguments.
-  Description& input(std::string name, std::string doc = "") {
-    detail::add_input(type_, Ports::kinds, std::move(name), std::move(doc));
+  Description& input(const std::string& name, const std::string& doc = "") {
+    detail::add_input(type_, Ports::kinds, name, doc);
     return *this;
   }
   /// Names the one output.
   Description& output(std::string name, std::string doc = "") {
     static_assert(Port<Produced>, "name the members of a returned struct: output(\"name\", &Out::member)");
-    return add_output(std::move(name), std::move(doc), type_info<Produced>(), drops_items,
+    return add_output(std::move(name), std::move(doc), type_info<Produced>(), typeid(Produced), drops_items,
                       [](Produced& all) { return Value::of(std::move(all)); });
   }
   /// Names one member of the returned struct as an output.
@@ -236,7 +241,7 @@ class Description {
   Description& output(std::string name, M Produced::*member, std::string doc = "") {
     using T = typename detail::unwrap_optional<M>::type;
     static_assert(Port<T>, "specialise port_type for the type of this output");
-    return add_output(std::move(name), std::move(doc), type_info<T>(), drops_items || !std::is_same_v<T, M>,
+    return add_output(std::move(name), std::move(doc), type_info<T>(), typeid(T), drops_items || !std::is_same_v<T, M>,
                       [member](Produced& all) { return detail::to_value(std::move(all.*member)); });
   }
   template <class M>
@@ -250,8 +255,10 @@ class Description {
  private:
   using Getter = std::function<Value(Produced&)>;
 
-  Description& add_output(std::string name, std::string doc, const TypeInfo& info, bool may_drop, Getter get) {
-    detail::add_output(type_, {std::move(name), std::move(doc), info.type, PortSpec::Kind::item, may_drop, &info});
+  Description& add_output(std::string name, std::string doc, const TypeInfo& info, const std::type_info& cpp,
+                          bool may_drop, Getter get) {
+    detail::add_output(type_,
+                       {std::move(name), std::move(doc), info.type, PortSpec::Kind::item, may_drop, &info, &cpp});
     getters_.push_back(std::move(get));
     return *this;
   }

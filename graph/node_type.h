@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 #include "graph/context.h"
@@ -40,9 +41,10 @@ struct PortSpec {
   std::string name;
   std::string doc;
   PortType type;
-  Kind kind = Kind::item;          ///< of an input
-  bool may_drop = false;           ///< of an output
-  const TypeInfo* info = nullptr;  ///< of an output: how its values are loaded
+  Kind kind = Kind::item;               ///< of an input
+  bool may_drop = false;                ///< of an output
+  const TypeInfo* info = nullptr;       ///< of an output: how its values are loaded
+  const std::type_info* cpp = nullptr;  ///< the C++ type; none for any_type
 };
 
 /// All that is known of a node type: made from its description.

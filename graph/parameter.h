@@ -269,10 +269,9 @@ template <class T>
 class Parameters {
  public:
   template <class M>
-  ParameterHandle param(std::string name, M T::*member) {
+  ParameterHandle param(const std::string& name, M T::*member) {
     const T defaults{};
-    return ParameterHandle(
-        detail::add(specs_, detail::spec_of_type<M>(), std::move(name), &defaults, &(defaults.*member)));
+    return ParameterHandle(detail::add(specs_, detail::spec_of_type<M>(), name, &defaults, &(defaults.*member)));
   }
 
   std::vector<ParameterSpec>& specs() { return specs_; }

@@ -14,7 +14,8 @@ namespace talkgraph {
 class Registry {
  public:
   /// Adds a node type from its `describe`. Throws std::logic_error on a
-  /// duplicate name or an incomplete description.
+  /// duplicate name, an incomplete description, or a port type whose name
+  /// belongs to another C++ type.
   template <class N>
   void add() {
     Description<N> description;
@@ -29,8 +30,11 @@ class Registry {
   const std::vector<PortType>& port_types() const { return port_types_; }
 
  private:
+  void add_port(const PortSpec& port);
+
   std::map<std::string, NodeType> types_;
   std::vector<PortType> port_types_;
+  std::map<std::string_view, const std::type_info*> cpp_;  ///< of port types, by their names
 };
 
 }  // namespace talkgraph

@@ -86,6 +86,30 @@ LocatedJson json(const std::string& text, Diagnostics& diagnostics) {
   return *parse_json(std::make_shared<SourceText>(SourceText{"test.json", text}), diagnostics);
 }
 
+/// Bears a name that is taken.
+struct Impostor {
+  std::string text;
+};
+void fields(Archive& ar, Impostor& i) { ar("text", i.text); }
+
+}  // namespace
+template <>
+inline constexpr PortType port_type<Impostor>{port_type<Number>.name, port_type<Number>.version};
+namespace {
+
+struct MakeImpostor {
+  Impostor operator()(const Number&) const { return {}; }
+};
+void describe(Description<MakeImpostor>& d) {
+  d.type("test.impostor").summary("gives another type of the same name").input("number").output("number");
+}
+
+TEST(Description, APortTypeIsOneCppType) {
+  Registry r;
+  r.add<Note>();
+  EXPECT_THROW(r.add<MakeImpostor>(), std::logic_error);
+}
+
 TEST(Description, GivesAnyValueAndHowItCameAbout) {
   Registry r;
   r.add<Note>();
