@@ -4,24 +4,22 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <opencv2/core.hpp>
 
 #include "cli/cache.h"
 #include "cli/example.h"
 #include "cli/experiment.h"
 #include "cli/look.h"
 #include "cli/reference.h"
-#include "cli/registry.h"
 #include "cli/run.h"
 #include "cli/samples.h"
 #include "cli/speak.h"
 #include "experiment/experiment.h"
 #include "graph/output_file.h"
+#include "graph/plugin.h"
 #include "graph/schema.h"
+#include "nodes/all_nodes.h"
 #include "nodes/model/save.h"
 #include "runtime/why.h"
-
-extern "C" void openblas_set_num_threads(int);
 
 namespace {
 
@@ -116,12 +114,14 @@ void add_progress(CLI::App& app, std::optional<ProgressStyle>& style) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // One thread inside a kernel, many items beside each other.
-  cv::setNumThreads(1);
-  openblas_set_num_threads(1);
   CLI::App app{"talkgraph: learn a talking face from recordings of one speaker, then let new speech drive it"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "talkgraph " TALKGRAPH_VERSION);
+  std::vector<std::string> plugins;
+  app.add_option("--plugin", plugins, "shared library with nodes of your own; any number, before or after the command")
+      ->take_all()
+      ->allow_extra_args(false);
+  app.fallthrough();
   std::vector<std::string> sets, files;
   std::string graph, word, type, format = "svg", output;
   RunCommand run;
@@ -232,7 +232,8 @@ int main(int argc, char** argv) {
   }
 
   try {
-    const Registry registry = all_nodes();
+    Registry registry = all_nodes();
+    for (const auto& plugin : plugins) load_plugin(plugin, registry);
     const auto command = [&]() -> int {
       run.cached = !no_cache;
       if (*run_app) return run_file(graph, run, registry);

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "cli/registry.h"
 #include "cli/run.h"
+#include "nodes/all_nodes.h"
 #include "nodes/media/audio_file.h"
 #include "tests/temporary_folder.h"
 

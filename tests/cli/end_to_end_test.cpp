@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cli/registry.h"
 #include "cli/run.h"
 #include "cli/speak.h"
+#include "nodes/all_nodes.h"
 #include "nodes/media/audio_file.h"
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/video_file.h"

@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "cli/look.h"
-#include "cli/registry.h"
 #include "experiment/experiment.h"
 #include "graph/differences.h"
+#include "nodes/all_nodes.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {

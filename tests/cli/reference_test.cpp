@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "cli/example.h"
-#include "cli/registry.h"
 #include "cli/samples.h"
+#include "nodes/all_nodes.h"
 #include "nodes/media/ffmpeg.h"
 #include "nodes/types/audio.h"
 #include "nodes/types/phones.h"

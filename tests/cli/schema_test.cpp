@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "cli/registry.h"
 #include "experiment/experiment.h"
+#include "nodes/all_nodes.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cli/registry.h"
+#include "nodes/all_nodes.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {

@@ -1,4 +1,6 @@
-#include "cli/registry.h"
+#include "nodes/all_nodes.h"
+
+#include <opencv2/core.hpp>
 
 #include "nodes/context/register.h"
 #include "nodes/corpus/register.h"
@@ -20,9 +22,13 @@
 #include "nodes/write/register.h"
 #include "nodes/yardstick/register.h"
 
-namespace talkgraph::cli {
+extern "C" void openblas_set_num_threads(int);
+
+namespace talkgraph {
 
 Registry all_nodes() {
+  cv::setNumThreads(1);
+  openblas_set_num_threads(1);
   Registry r;
   register_context(r);
   register_corpus(r);
@@ -46,4 +52,4 @@ Registry all_nodes() {
   return r;
 }
 
-}  // namespace talkgraph::cli
+}  // namespace talkgraph

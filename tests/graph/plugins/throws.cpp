@@ -1,0 +1,3 @@
+#include "graph/plugin.h"
+
+TALKGRAPH_PLUGIN([](talkgraph::Registry&) { throw std::runtime_error("no licence today"); })

@@ -1,0 +1,3 @@
+#include "graph/plugin.h"
+
+TALKGRAPH_PLUGIN([](talkgraph::Registry&) { throw 42; })

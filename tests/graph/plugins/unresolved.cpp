@@ -1,0 +1,6 @@
+#include "graph/plugin.h"
+
+// Stands for a function that this talkgraph does not have.
+void gone(talkgraph::Registry& registry);
+
+TALKGRAPH_PLUGIN(gone)
