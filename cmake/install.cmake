@@ -1,6 +1,5 @@
 # cmake --install: the program, the libraries with their headers below include/talkgraph, the CMake package, and the
 # pipelines with their schemas as shared data.
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/talkgraph)

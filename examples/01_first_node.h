@@ -25,10 +25,11 @@ struct Loudness {
   }
 };
 
-// The description is what a graph needs to know: the type's name, a line for people, and a name for each input and
-// output, in the order of the call operator.
+// The description is what a graph needs to know: the type's name, a line for people, and for each input and output, in
+// the order of the call operator, a name and what it is.
 inline void describe(Description<Loudness>& d) {
-  d.type("mine.loudness").summary("level of each hundredth of a second, dB").input("audio").output("level");
+  d.type("mine.loudness").summary("level of each hundredth of a second, dB");
+  d.input("audio", "one channel").output("level", "T x 1, dB of full scale");
 }
 
 }  // namespace mine

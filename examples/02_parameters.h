@@ -22,7 +22,7 @@ struct Scale {
   }
 };
 inline void describe(Description<Scale>& d) {
-  d.type("mine.scale").summary("brings quiet..loud to 0..1").input("level").output("share");
+  d.type("mine.scale").summary("brings quiet..loud to 0..1").input("level", "dB").output("share", "0..1");
   d.param("quiet", &Scale::quiet).within(-120, -40).unit("dB").doc("becomes 0");
   d.param("loud", &Scale::loud).within(-39, 0).unit("dB").doc("becomes 1");
 }
@@ -60,7 +60,7 @@ struct Smooth {
   }
 };
 inline void describe(Description<Smooth>& d) {
-  d.type("mine.smooth").summary("moving average").input("track").output("track");
+  d.type("mine.smooth").summary("moving average").input("track", "T x D").output("track", "T x D");
   d.param("width", &Smooth::width).positive().unit("s").doc("of the window");
   d.param("window", &Smooth::window).doc("box: all frames count the same; triangle: near ones count more");
 }

@@ -50,7 +50,7 @@ struct LearnJaw {
 // results, so that nobody finds the old ones.
 inline void describe(Description<LearnJaw>& d) {
   d.type("mine.learn_jaw").version(1).summary("learns how loudness opens the jaw").stored();
-  d.input("loudness").input("jaw").output("model");
+  d.input("loudness", "T x 1 each").input("jaw", "T x 1 each, at the same rate").output("model", "the line");
 }
 
 /// Opens a jaw with loudness.
@@ -63,7 +63,8 @@ struct MoveJaw {
   }
 };
 inline void describe(Description<MoveJaw>& d) {
-  d.type("mine.move_jaw").summary("opens a jaw with loudness").input("loudness").input("model").output("jaw");
+  d.type("mine.move_jaw").summary("opens a jaw with loudness");
+  d.input("loudness", "T x 1").input("model", "of mine.learn_jaw").output("jaw", "T x 1");
 }
 
 }  // namespace mine

@@ -54,7 +54,7 @@ struct Babble {
 };
 inline void describe(Description<Babble>& d) {
   d.type("mine.babble").summary("recordings of a buzzing voice and its jaw");
-  d.output("sound", &Babble::Recording::sound).output("jaw", &Babble::Recording::jaw, "25 frames per second");
+  d.output("sound", &Babble::Recording::sound, "16 kHz").output("jaw", &Babble::Recording::jaw, "25 frames per second");
   d.param("count", &Babble::count).within(1, 1000).doc("recordings made");
   d.param("seconds", &Babble::seconds).within(0.1, 60).unit("s").doc("length of each");
 }

@@ -1,4 +1,4 @@
-// 7. A graph run from a C++ program: 07_program 06_graph.json FOLDER
+// 7. A graph run from a C++ program, which registers its own nodes: program 06_graph.json FOLDER
 #include <iostream>
 
 #include "06_nodes.h"
@@ -6,9 +6,10 @@
 #include "nodes/types/report.h"
 #include "runtime/executor.h"
 
-int main(int, char** argv) {
+int main(int argc, char** argv) {
+  if (argc != 3) return std::cerr << "usage: program GRAPH.json FOLDER\n", 2;
   talkgraph::Registry registry = talkgraph::all_nodes();
-  mine::add_nodes(registry);  // or talkgraph::load_plugin("libmy_nodes.so", registry)
+  mine::add_nodes(registry);
   talkgraph::Diagnostics mistakes;
   const auto graph = talkgraph::load_graph(argv[1], registry, mistakes);
   if (!graph) return std::cerr << mistakes.str() << '\n', 2;

@@ -11,13 +11,16 @@
 
 #define TALKGRAPH_TEXT_OF(x) #x
 #define TALKGRAPH_TEXT(x) TALKGRAPH_TEXT_OF(x)
+#define TALKGRAPH_EIGEN \
+  TALKGRAPH_TEXT(EIGEN_WORLD_VERSION) "." TALKGRAPH_TEXT(EIGEN_MAJOR_VERSION) "." TALKGRAPH_TEXT(EIGEN_MINOR_VERSION)
+#define TALKGRAPH_ALIGNMENT TALKGRAPH_TEXT(EIGEN_MAX_ALIGN_BYTES)
+#define TALKGRAPH_STRINGS TALKGRAPH_TEXT(_GLIBCXX_USE_CXX11_ABI)
 
 /// What a plugin and a program must have in common, as values pass between them as they lie in memory: talkgraph's
 /// headers, Eigen and how it aligns matrices, the layout of std::string.
-#define TALKGRAPH_PLUGIN_VERSION                                                                             \
-  "talkgraph " TALKGRAPH_PLUGIN_HEADERS                                                                      \
-  ", Eigen " TALKGRAPH_TEXT(EIGEN_WORLD_VERSION) "." TALKGRAPH_TEXT(EIGEN_MAJOR_VERSION) "." TALKGRAPH_TEXT( \
-      EIGEN_MINOR_VERSION) " aligned to " TALKGRAPH_TEXT(EIGEN_MAX_ALIGN_BYTES) ", C++ strings " TALKGRAPH_TEXT(_GLIBCXX_USE_CXX11_ABI)
+#define TALKGRAPH_PLUGIN_VERSION                                                                      \
+  "talkgraph " TALKGRAPH_PLUGIN_HEADERS ", Eigen " TALKGRAPH_EIGEN " aligned to " TALKGRAPH_ALIGNMENT \
+  ", C++ strings " TALKGRAPH_STRINGS
 
 namespace talkgraph {
 

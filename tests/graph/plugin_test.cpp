@@ -18,6 +18,7 @@ std::string plugin(const std::string& name) { return PLUGINS + name + ".so"; }
 /// Why a file is refused; empty if it is not.
 std::string refusal(const std::string& file) {
   Registry registry;
+  registry.add<toy::Constant>();
   try {
     load_plugin(file, registry);
   } catch (const std::invalid_argument& e) {
@@ -67,6 +68,7 @@ TEST(Plugin, ThatCannotBeUsedIsRefusedWithTheReason) {
   EXPECT_THAT(refusal(plugin("no_entry")), HasSubstr("TALKGRAPH_PLUGIN"));
   EXPECT_THAT(refusal(plugin("other_version")), AllOf(HasSubstr("talkgraph 0.0.1"), HasSubstr(TALKGRAPH_PLUGIN_VERSION),
                                                       HasSubstr("build the plugin again")));
+  EXPECT_THAT(refusal(plugin("clash")), HasSubstr("the port type Number is two C++ types"));
   EXPECT_THAT(refusal(plugin("throws")), HasSubstr("cannot be registered: no licence today"));
   EXPECT_THAT(refusal(plugin("throws_a_number")), HasSubstr("cannot be registered"));
 }
