@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
+#include <set>
 
 #include "runtime/plan.h"
 
@@ -34,6 +36,29 @@ std::string place_of(const Place& place) {
   return fmt::format("{}:{}:{}", place.source->name, place.line, place.column);
 }
 
+NodeStats empty_books(const Graph::Node& node) {
+  NodeStats books;
+  books.in.resize(node.inputs.size());
+  books.out.resize(node.type->outputs.size());
+  return books;
+}
+
+void add(NodeStats& sum, const NodeStats& part) {
+  const auto add_ports = [](std::vector<PortCount>& to, const std::vector<PortCount>& from) {
+    for (std::size_t p = 0; p < to.size(); ++p) to[p].items += from[p].items, to[p].values += from[p].values;
+  };
+  sum.calls += part.calls;
+  sum.skipped += part.skipped;
+  sum.failed += part.failed;
+  sum.loaded += part.loaded;
+  sum.unneeded += part.unneeded;
+  sum.saved += part.saved;
+  sum.wall += part.wall;
+  sum.cpu += part.cpu;
+  add_ports(sum.in, part.in);
+  add_ports(sum.out, part.out);
+}
+
 }  // namespace
 
 /// Where a sink writes before its files go to the run folder and the cache; cleared away behind it.
@@ -46,28 +71,39 @@ struct Caller::Desk {
   std::filesystem::path path;
 };
 
-/// Books the time of a call, and tells observers of it.
+/// Books the time of a call, and tells observers of it. Reading clocks costs more than a cheap call does: where calls
+/// take microseconds, one of several is timed and stands for all of them.
 class Caller::Watch {
  public:
-  Watch(Caller& caller, int node, std::string item)
-      : caller_(caller),
-        node_(node),
-        item_(std::move(item)),
-        wall_(nanoseconds(CLOCK_MONOTONIC)),
-        cpu_(nanoseconds(CLOCK_THREAD_CPUTIME_ID)) {
-    for (auto* o : caller_.options_.observers) o->call_started(node_, item_);
+  Watch(const Caller& caller, Station& station) : caller_(caller), station_(station), weight_(weight(station.books)) {
+    for (auto* o : caller_.options_.observers) o->call_started(station_.node, station_.context.item);
+    if (weight_ == 0) return;
+    wall_ = nanoseconds(CLOCK_MONOTONIC);
+    cpu_ = nanoseconds(CLOCK_THREAD_CPUTIME_ID);
   }
   ~Watch() {
-    caller_.books(node_).wall += nanoseconds(CLOCK_MONOTONIC) - wall_;
-    caller_.books(node_).cpu += nanoseconds(CLOCK_THREAD_CPUTIME_ID) - cpu_;
-    for (auto* o : caller_.options_.observers) o->call_ended(node_, item_);
+    if (weight_ > 0) {
+      station_.books.wall += weight_ * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - wall_);
+      station_.books.cpu += weight_ * static_cast<double>(nanoseconds(CLOCK_THREAD_CPUTIME_ID) - cpu_);
+    }
+    for (auto* o : caller_.options_.observers) o->call_ended(station_.node, station_.context.item);
   }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
 
  private:
-  Caller& caller_;
-  int node_;
-  std::string item_;
-  std::int64_t wall_, cpu_;
+  /// How many calls the next one stands for.
+  static double weight(const NodeStats& books) {
+    constexpr std::uint64_t one_of = 32;
+    constexpr double cheap = 1e-5;  // seconds
+    if (books.calls < one_of || books.wall > cheap * static_cast<double>(books.calls)) return 1e-9;
+    return books.calls % one_of == 0 ? 1e-9 * one_of : 0;
+  }
+
+  const Caller& caller_;
+  Station& station_;
+  const double weight_;  // times nanoseconds
+  std::int64_t wall_ = 0, cpu_ = 0;
 };
 
 std::string Failure::str() const {
@@ -77,15 +113,13 @@ std::string Failure::str() const {
 
 Caller::Caller(const Graph& graph, const RunOptions& options, Keeper* keeper)
     : graph_(graph), options_(options), keeper_(keeper), books_(graph.nodes.size()) {
-  for (std::size_t n = 0; n < books_.size(); ++n) {
-    books_[n].in.resize(graph.nodes[n].inputs.size());
-    books_[n].out.resize(graph.nodes[n].type->outputs.size());
-  }
+  for (std::size_t n = 0; n < books_.size(); ++n) books_[n] = empty_books(graph.nodes[n]);
 }
 
 std::vector<Input> Caller::fixed_inputs(int n, const std::function<Value(Graph::Port)>& single,
                                         const std::function<Gathered(Graph::Port)>& gathered) {
   std::vector<Input> inputs(node(n).inputs.size());
+  auto& books = books_[static_cast<std::size_t>(n)];
   for (std::size_t p = 0; p < inputs.size(); ++p) {
     const auto& wire = node(n).inputs[p];
     const bool collects = node(n).type->inputs[p].kind == PortSpec::Kind::collected;
@@ -95,12 +129,13 @@ std::vector<Input> Caller::fixed_inputs(int n, const std::function<Value(Graph::
         case Way::gathered: {
           const Gathered all = gathered(source);
           inputs[p].collected = *all.values;
-          books(n).in[p].add(all.items, all.values->size());
+          books.in[p].items += all.items;
+          books.in[p].values += all.values->size();
           break;
         }
         case Way::single: {
           Value value = single(source);
-          books(n).in[p].add(1, value ? 1 : 0);
+          Station::count(books.in[p], value);
           if (!collects)
             inputs[p].value = std::move(value);
           else if (value)
@@ -115,47 +150,47 @@ std::vector<Input> Caller::fixed_inputs(int n, const std::function<Value(Graph::
   return inputs;
 }
 
-void Caller::add_item_inputs(int n, std::vector<Input>& inputs, const std::function<const Value&(Graph::Port)>& item) {
-  for_each_source(graph_, n, [&](std::size_t p, Graph::Port source, Way w) {
-    if (w != Way::item) return;
-    inputs[p].value = item(source);
-    books(n).in[p].add(1, inputs[p].value ? 1 : 0);
+Station& Caller::station(int n, std::vector<Input> fixed_inputs) {
+  const std::lock_guard lock(mutex_);
+  auto& station = stations_.emplace_back();
+  station.node = n;
+  station.inputs = std::move(fixed_inputs);
+  for_each_source(graph_, n, [&](std::size_t p, Graph::Port, Way w) {
+    if (w == Way::item) station.item_ports.push_back(p);
   });
-}
-
-bool Caller::complete(int n, const std::vector<Input>& inputs) const {
-  for (std::size_t p = 0; p < inputs.size(); ++p)
-    if (node(n).type->inputs[p].kind == PortSpec::Kind::item && !inputs[p].value) return false;
-  return true;
-}
-
-Context Caller::context(int n, const std::string& item) const {
-  Context context;
-  context.item = item;
+  station.books = empty_books(node(n));
+  auto& context = station.context;
   context.folder = options_.folder;
   if (node(n).type->uses_provenance) context.provenance = provenance(graph_, n);
   context.cancel = options_.cancel;
   context.stop = &stop_;
-  context.on_progress = [this, n, item](double share) {
-    for (auto* o : options_.observers) o->progress(n, item, share);
+  context.on_progress = [this, s = &station](double share) {
+    for (auto* o : options_.observers) o->progress(s->node, s->context.item, share);
   };
-  context.on_log = [this, n, item](std::string_view message) {
-    for (auto* o : options_.observers) o->log(n, item, message);
+  context.on_log = [this, s = &station](std::string_view message) {
+    for (auto* o : options_.observers) o->log(s->node, s->context.item, message);
   };
-  context.on_warning = [this, n, item](std::string_view message) {
-    for (auto* o : options_.observers) o->warn(n, item, message);
+  context.on_warning = [this, s = &station](std::string_view message) {
+    for (auto* o : options_.observers) o->warn(s->node, s->context.item, message);
   };
-  return context;
+  return station;
 }
 
-void Caller::sent(int n, const std::vector<Value>& outputs) {
-  for (std::size_t p = 0; p < outputs.size(); ++p) books(n).out[p].add(1, outputs[p] ? 1 : 0);
+bool Caller::complete(const NodeType& type, const std::vector<Input>& inputs) {
+  for (std::size_t p = 0; p < inputs.size(); ++p)
+    if (type.inputs[p].kind == PortSpec::Kind::item && !inputs[p].value) return false;
+  return true;
 }
 
-void Caller::failed(int n, const std::string& item, std::string cause) {
+void Caller::sent(Station& station, const std::vector<Value>& outputs) {
+  for (std::size_t p = 0; p < outputs.size(); ++p) Station::count(station.books.out[p], outputs[p]);
+}
+
+void Caller::failed(Station& station, const std::string& item, std::string cause) {
   check_stopped();
+  const int n = station.node;
   Failure failure{node(n).name, item, place_of(node(n).place), std::move(cause)};
-  books(n).failed += 1;
+  station.books.failed += 1;
   {
     const std::lock_guard lock(mutex_);
     failures_.push_back(failure);
@@ -165,66 +200,75 @@ void Caller::failed(int n, const std::string& item, std::string cause) {
   for (auto* o : options_.observers) o->failed(failure);
 }
 
-std::vector<Value> Caller::call(int n, const std::string& item, std::vector<Input> inputs) {
+std::vector<Value> Caller::call(Station& station, const std::string& item) {
   check_stopped();
+  const int n = station.node;
+  station.context.item = item;
   std::vector<Value> outputs;
   switch (keeper_ ? keeper_->forecast().need(n, item) : Need::call) {
     case Need::skip:
-      books(n).unneeded += 1;
+      station.books.unneeded += 1;
       break;
     case Need::load:
-      outputs = load(n, item);
+      outputs = load(station);
       break;
     case Need::call:
-      outputs = compute(n, item, inputs);
+      outputs = compute(station);
       break;
   }
+  for (const auto p : station.item_ports) station.inputs[p].value = {};
   outputs.resize(node(n).type->outputs.size());
-  sent(n, outputs);
+  sent(station, outputs);
   for (auto* o : options_.observers) o->item_done(n, item);
   return outputs;
 }
 
-std::vector<Value> Caller::load(int n, const std::string& item) {
-  const Watch watch(*this, n, item);
+std::vector<Value> Caller::load(Station& station) {
+  const Watch watch(*this, station);
+  const int n = station.node;
+  const auto& item = station.context.item;
   auto result = keeper_->load(n, item);
-  books(n).loaded += 1;
+  station.books.loaded += 1;
   for (auto* o : options_.observers) o->loaded(n, item);
-  books(n).saved += static_cast<std::int64_t>(1e9 * result.seconds);
+  station.books.saved += result.seconds;
   for (const auto& warning : result.warnings)
     for (auto* o : options_.observers) o->warn(n, item, warning);
   return std::move(result.outputs);
 }
 
-std::vector<Value> Caller::compute(int n, const std::string& item, const std::vector<Input>& inputs) {
+std::vector<Value> Caller::compute(Station& station) {
+  const int n = station.node;
+  const auto& type = *node(n).type;
+  const auto& item = station.context.item;
   const bool kept = keeper_ && keeper_->keeps(n);
   Cache::Result result;
   std::optional<Desk> desk;
-  if (!complete(n, inputs)) {
-    books(n).skipped += 1;
+  if (!complete(type, station.inputs)) {
+    station.books.skipped += 1;
   } else {
-    const Watch watch(*this, n, item);
-    books(n).calls += 1;
-    const auto start = nanoseconds(CLOCK_MONOTONIC);
+    const Watch watch(*this, station);
+    station.books.calls += 1;
+    const auto start = kept ? nanoseconds(CLOCK_MONOTONIC) : 0;
     try {
-      Context surroundings = context(n, item);
+      std::optional<Context> of_kept;
       if (kept) {
-        surroundings.on_warning = [&, tell = surroundings.on_warning](std::string_view message) {
+        of_kept = station.context;
+        of_kept->on_warning = [&](std::string_view message) {
           result.warnings.emplace_back(message);
-          tell(message);
+          station.context.warn(message);
         };
-        if (node(n).type->sink) surroundings.folder = desk.emplace(keeper_->desk()).path;
+        if (type.sink) of_kept->folder = desk.emplace(keeper_->desk()).path;
       }
-      Random random(graph_.seed, node(n).type->name, item);
-      result.outputs = node(n).functor->call(inputs, surroundings, random);
+      Random random = type.uses_random ? Random(graph_.seed, type.name, item) : Random();
+      result.outputs = node(n).functor->call(station.inputs, kept ? *of_kept : station.context, random);
       if (desk) keeper_->deliver(desk->path);
     } catch (const Cancelled&) {
       throw;
     } catch (...) {
-      failed(n, item, cause_of(std::current_exception()));
+      failed(station, item, cause_of(std::current_exception()));
       return {};
     }
-    result.seconds = 1e-9 * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - start);
+    if (kept) result.seconds = 1e-9 * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - start);
   }
   if (kept && !tainted(n, item)) keeper_->keep(n, item, result, desk ? desk->path : std::filesystem::path());
   return std::move(result.outputs);
@@ -253,26 +297,8 @@ void Caller::domain_size(int source, std::size_t items) const {
 }
 
 std::vector<NodeStats> Caller::stats() const {
-  const auto counts = [](const std::deque<Count>& from) {
-    std::vector<PortCount> all;
-    for (const auto& c : from) all.push_back({c.items, c.values});
-    return all;
-  };
-  std::vector<NodeStats> all;
-  for (const auto& b : books_) {
-    NodeStats s;
-    s.calls = b.calls;
-    s.skipped = b.skipped;
-    s.failed = b.failed;
-    s.loaded = b.loaded;
-    s.unneeded = b.unneeded;
-    s.saved = 1e-9 * static_cast<double>(b.saved);
-    s.wall = 1e-9 * static_cast<double>(b.wall);
-    s.cpu = 1e-9 * static_cast<double>(b.cpu);
-    s.in = counts(b.in);
-    s.out = counts(b.out);
-    all.push_back(std::move(s));
-  }
+  auto all = books_;
+  for (const auto& station : stations_) add(all[static_cast<std::size_t>(station.node)], station.books);
   return all;
 }
 
@@ -292,29 +318,29 @@ std::vector<Failure> Caller::failures() const {
 
 OpenSource::OpenSource(Caller& caller, int node, std::vector<Input> inputs)
     : caller_(caller),
-      node_(node),
-      context_(caller.context(node, "")),
+      station_(caller.station(node, std::move(inputs))),
       random_(caller.graph_.seed, caller.node(node).type->name, "") {
   caller_.check_stopped();
   if (caller_.keeper_ && caller_.keeper_->forecast().need(node, "") == Need::skip) return;
-  if (!caller_.complete(node, inputs)) {
-    caller_.books(node).skipped += 1;
+  if (!Caller::complete(*caller_.node(node).type, station_.inputs)) {
+    station_.books.skipped += 1;
     return;
   }
-  const Caller::Watch watch(caller_, node, "");
   try {
-    stream_.emplace(caller_.node(node).functor->stream(inputs, context_, random_));
+    const Caller::Watch watch(caller_, station_);
+    stream_.emplace(caller_.node(node).functor->stream(station_.inputs, station_.context, random_));
     if (const auto size = stream_->size()) caller_.domain_size(node, *size);
   } catch (const Cancelled&) {
     throw;
   } catch (...) {
-    caller_.failed(node, "", cause_of(std::current_exception()));
+    caller_.failed(station_, "", cause_of(std::current_exception()));
   }
+  station_.inputs.clear();
 }
 
 std::optional<Item<std::vector<Value>>> OpenSource::pull() {
   for (;;) {
-    const Caller::Watch watch(caller_, node_, "");
+    const Caller::Watch watch(caller_, station_);
     try {
       ++pulled_;
       return stream_->next();
@@ -323,7 +349,7 @@ std::optional<Item<std::vector<Value>>> OpenSource::pull() {
     } catch (...) {
       // The key of the item that failed is not known, that of the one before is.
       const auto cause = cause_of(std::current_exception());
-      caller_.failed(node_, "",
+      caller_.failed(station_, "",
                      last_.empty() ? fmt::format("the first item: {}", cause)
                                    : fmt::format("the item after \"{}\": {}", last_, cause));
       // A source of unknown length might fail for ever.
@@ -342,14 +368,15 @@ std::optional<Item<std::vector<Value>>> OpenSource::next() {
     }
     last_ = item->key;
     if (!keys_.insert(item->key).second) {
-      caller_.failed(node_, item->key, "this key came before: the keys of a source must be unique");
+      caller_.failed(station_, item->key, "this key came before: the keys of a source must be unique");
       continue;
     }
-    caller_.books(node_).calls += 1;
-    item->value.resize(caller_.node(node_).type->outputs.size());
-    if (caller_.keeper_) caller_.keeper_->forecast().enter(node_, item->key, item->value);
-    caller_.sent(node_, item->value);
-    for (auto* o : caller_.options_.observers) o->item_done(node_, item->key);
+    const int node = station_.node;
+    station_.books.calls += 1;
+    item->value.resize(caller_.node(node).type->outputs.size());
+    if (caller_.keeper_) caller_.keeper_->forecast().enter(node, item->key, item->value);
+    Caller::sent(station_, item->value);
+    for (auto* o : caller_.options_.observers) o->item_done(node, item->key);
     return item;
   }
   return {};

@@ -5,8 +5,8 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "runtime/executor.h"
@@ -17,27 +17,46 @@ namespace talkgraph {
 /// A whole stream as its readers get it.
 struct Gathered {
   std::uint64_t items = 0;  ///< of the domain, with nothings
-  std::shared_ptr<const std::vector<Item<Value>>> values = std::make_shared<std::vector<Item<Value>>>();
+  std::shared_ptr<std::vector<Item<Value>>> values = std::make_shared<std::vector<Item<Value>>>();
 };
 
-/// What both executors share: one call of one node. It puts the inputs
-/// together, gives Context and Random, keeps the books and the times, and puts
-/// node, item and place to errors.
+/// A node at work, one call at a time: what is needed for every call and dear to make anew. A node has as many stations
+/// as it works on items at once, so that none of this is shared between threads.
+struct Station {
+  int node = 0;
+  std::vector<Input> inputs;            ///< those that are the same in every call, and while one runs, the item's
+  std::vector<std::size_t> item_ports;  ///< inputs that change with the item
+  Context context;
+  NodeStats books;
+
+  /// Puts in what the item at hand has for an input.
+  void give(std::size_t port, Value value) {
+    count(books.in[port], value);
+    inputs[port].value = std::move(value);
+  }
+  static void count(PortCount& port, const Value& value) {
+    port.items += 1;
+    port.values += value ? 1 : 0;
+  }
+};
+
+/// What both executors share: one call of one node. It gives Context and
+/// Random, keeps the books and the times, and puts node, item and place to errors.
 class Caller {
  public:
   /// `keeper` is null where nothing is kept.
   Caller(const Graph& graph, const RunOptions& options, Keeper* keeper);
 
-  /// The inputs that are the same in every call of a node.
+  /// The inputs that are the same in every call of a node; asked for once.
   std::vector<Input> fixed_inputs(int node, const std::function<Value(Graph::Port)>& single,
                                   const std::function<Gathered(Graph::Port)>& gathered);
-  /// Adds those of one item.
-  void add_item_inputs(int node, std::vector<Input>& inputs, const std::function<const Value&(Graph::Port)>& item);
+  /// A new station, with those inputs; it stays as long as the caller.
+  Station& station(int node, std::vector<Input> fixed_inputs);
 
   /// One value an output port; empty ones if nobody wants them, if a required input has nothing, if
-  /// the node drops the item, or if it failed and the run keeps going. Throws
-  /// RunError, Cancelled or Cache::Damaged.
-  std::vector<Value> call(int node, const std::string& item, std::vector<Input> inputs);
+  /// the node drops the item, or if it failed and the run keeps going. The item's inputs are given
+  /// before and gone behind it. Throws RunError, Cancelled or Cache::Damaged.
+  std::vector<Value> call(Station& station, const std::string& item);
 
   /// Makes running nodes give up; later calls throw Cancelled.
   void stop() { stop_ = true; }
@@ -50,30 +69,18 @@ class Caller {
  private:
   friend class OpenSource;
 
-  struct Count {
-    std::atomic<std::uint64_t> items{0}, values{0};
-    void add(std::uint64_t i, std::uint64_t v) { items += i, values += v; }
-  };
-  struct Books {
-    std::deque<Count> in, out;
-    std::atomic<std::uint64_t> calls{0}, skipped{0}, failed{0}, loaded{0}, unneeded{0};
-    std::atomic<std::int64_t> wall{0}, cpu{0}, saved{0};  // nanoseconds
-  };
   class Watch;
   struct Desk;
 
   const Graph::Node& node(int n) const { return graph_.nodes[static_cast<std::size_t>(n)]; }
-  Books& books(int n) { return books_[static_cast<std::size_t>(n)]; }
-  Context context(int node, const std::string& item) const;
-  bool complete(int node, const std::vector<Input>& inputs) const;
-  void sent(int node, const std::vector<Value>& outputs);
-  std::vector<Value> load(int node, const std::string& item);
-  std::vector<Value> compute(int node, const std::string& item, const std::vector<Input>& inputs);
-  void keep(int node, const std::string& item, const Cache::Result& result, const std::filesystem::path& written);
+  static bool complete(const NodeType& type, const std::vector<Input>& inputs);
+  static void sent(Station& station, const std::vector<Value>& outputs);
+  std::vector<Value> load(Station& station);
+  std::vector<Value> compute(Station& station);
   /// Whether a failed item may have had a hand in what a node makes of an item.
   bool tainted(int node, const std::string& item) const;
   /// Books a failure; throws RunError unless the run keeps going.
-  void failed(int node, const std::string& item, std::string cause);
+  void failed(Station& station, const std::string& item, std::string cause);
   void check_stopped() const {
     if (stopped()) throw Cancelled();
   }
@@ -81,9 +88,10 @@ class Caller {
   const Graph& graph_;
   const RunOptions& options_;
   Keeper* const keeper_;
-  std::deque<Books> books_;
+  std::vector<NodeStats> books_;  // of what came before there were stations
+  std::deque<Station> stations_;
   std::atomic<bool> stop_{false};
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;  // of what follows, and of making stations
   std::vector<Failure> failures_;
   std::vector<std::pair<int, std::string>> failed_;  // nodes and items of failures_
 };
@@ -100,11 +108,10 @@ class OpenSource {
   std::optional<Item<std::vector<Value>>> pull();
 
   Caller& caller_;
-  const int node_;
-  Context context_;
+  Station& station_;
   Random random_;
   std::optional<AnyStream> stream_;
-  std::set<std::string> keys_;
+  std::unordered_set<std::string> keys_;
   std::string last_;
   std::size_t pulled_ = 0;
 };

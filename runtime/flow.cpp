@@ -29,44 +29,60 @@ void add_once(std::vector<T>& list, const T& element) {
   if (std::find(list.begin(), list.end(), element) == list.end()) list.push_back(element);
 }
 
-/// An item of a source on its way. What nodes make for it lies here, one slot a
-/// port, until the last reader has run; only a pointer travels along the edges.
-/// So joining is by item, an item without value travels like any other, and
-/// collecting in order is a walk over the items.
-struct FlowItem {
-  FlowItem(std::string k, const std::vector<int>& readers_of_slot, std::size_t nodes)
-      : key(std::move(k)), values(readers_of_slot.size()), readers(readers_of_slot.size()), awaited(nodes) {
-    for (std::size_t s = 0; s < readers.size(); ++s) readers[s] = readers_of_slot[s];
-  }
+/// An item on its way through a sweep, and when it is done, the next one. What
+/// nodes make for it lies here, one slot a port, until the last reader of the sweep has run; only a pointer travels
+/// along the edges. So joining is by item, an item without value travels like any other.
+struct Flight {
+  Flight(std::size_t slots, std::size_t runs) : values(slots), readers(slots), awaited(runs) {}
 
-  std::string key;
+  const std::string* key = nullptr;       // null where there is no item
+  std::size_t index = 0;                  // in its domain
   std::vector<Value> values;              // one a slot
   std::vector<std::atomic<int>> readers;  // of a slot, still to come
-  std::vector<std::atomic<int>> awaited;  // of a node: nodes of its sweep that it waits for
-  std::atomic<int> left{0};               // nodes of the sweep still to run
+  std::vector<std::atomic<int>> awaited;  // of a run of nodes: the runs that it waits for
+  std::atomic<int> left{0};               // runs still to come
+  std::vector<Station*> stations;         // of the nodes, in the order of the runs
 };
 
-/// The items of a source.
+/// The items of a source, and what is held of them when a sweep is over: collecting in order is a walk over the items.
 struct Domain {
-  std::vector<int> readers;    // of each slot
-  std::deque<FlowItem> items;  // grows at the end, addresses stay
-  std::vector<int> awaited;    // initial counts of its nodes, by rank in the domain
+  std::deque<std::string> keys;          // grows at the end, addresses stay
+  std::vector<std::vector<Value>> held;  // [slot][item]
 };
 
-struct Ticket {};
-
-using Pump = flow::multifunction_node<Ticket, std::tuple<FlowItem*, flow::continue_msg>>;
+using Pump = flow::multifunction_node<Flight*, std::tuple<Flight*, flow::continue_msg>>;
 using Start = flow::continue_node<flow::continue_msg>;
-using Join = flow::multifunction_node<FlowItem*, std::tuple<FlowItem*>, flow::queueing_lightweight>;
-using Worker = flow::function_node<FlowItem*, FlowItem*>;
+using Join = flow::multifunction_node<Flight*, std::tuple<Flight*>, flow::queueing_lightweight>;
+using Worker = flow::function_node<Flight*, Flight*>;
 
-/// A sweep over the items of a domain: the start node hands `in_flight` tickets
-/// to the pump; each ticket lets one item in and comes back when the last node
+/// A node of a sweep: where its inputs come from and its outputs go.
+struct Step {
+  int node = 0;
+  std::size_t station = 0;
+  struct Take {
+    std::size_t port = 0, slot = 0;
+  };
+  std::vector<Take> takes;
+  std::vector<int> puts;  // the slot of each output, or -1
+};
+
+/// A sweep over the items of a domain: the start node hands `in_flight` flights
+/// to the pump; each takes one item along and comes back when the last node
 /// of the sweep has run for it.
 struct Sweep {
+  std::vector<std::vector<Step>> runs;
+  std::vector<int> readers;  // of each slot: those of the sweep, and one if it is held
+  struct Fetch {
+    std::size_t slot = 0;
+    bool last = false;  // no later sweep wants it
+  };
+  std::vector<Fetch> fetched;     // what earlier sweeps held
+  std::vector<std::size_t> held;  // slots that are wanted when the sweep is over
+
   std::optional<OpenSource> source;  // of the sweep that opens its domain
   std::size_t next = 0;              // item, of a later sweep
-  int out = 0;                       // tickets not in the pump
+  int out = 0;                       // flights not in the pump
+  std::deque<Flight> flights;
   std::unique_ptr<Pump> pump;
 };
 
@@ -89,9 +105,10 @@ class FlowRun {
  private:
   /// Where the values of a port lie, and who still needs them.
   struct Shelf {
-    int slot = -1;      // in the items of its domain, -1 if no node reads it there
-    Value single;       // of a node that runs once
-    Gathered gathered;  // of a stream that is read whole
+    int slot = -1;        // in the items of its domain, -1 if no node reads it there
+    int last_sweep = -1;  // that reads it item by item
+    Value single;         // of a node that runs once
+    Gathered gathered;    // of a stream that is read whole
     bool is_gathered = false;
     std::atomic<int> units{0};  // that read single or gathered, still to come
   };
@@ -114,62 +131,73 @@ class FlowRun {
     });
     return ports;
   }
-  /// The ports of which a node reads the item's value, each once.
-  std::vector<Graph::Port> item_ports(int n) const {
-    std::vector<Graph::Port> ports;
-    for_each_source(graph_, n, [&](std::size_t, Graph::Port source, Way w) {
-      if (w == Way::item) add_once(ports, source);
-    });
-    return ports;
-  }
-  /// The nodes of its own sweep that a node waits for.
-  std::vector<int> awaited_nodes(int n) const {
-    std::vector<int> nodes;
-    for (const auto& p : item_ports(n))
-      if (!node(p.node).type->makes_stream && plan_.unit[at(p.node)] == plan_.unit[at(n)]) add_once(nodes, p.node);
-    return nodes;
-  }
 
   void lay_out() {
     const std::size_t count = graph_.nodes.size();
     shelves_ = std::vector<std::vector<Shelf>>(count);
     domains_ = std::vector<Domain>(count);
-    fixed_.resize(count);
-    item_ports_.resize(count);
-    rank_.resize(count);
+    sweeps_ = std::vector<Sweep>(plan_.units.size());
     for (std::size_t n = 0; n < count; ++n) shelves_[n] = std::vector<Shelf>(graph_.nodes[n].type->outputs.size());
-
-    const auto read_slot = [&](Graph::Port p) {
-      auto& readers = domains_[at(domain_of(p))].readers;
-      if (shelf(p).slot < 0) {
-        shelf(p).slot = static_cast<int>(readers.size());
-        readers.push_back(0);
-      }
-      ++readers[at(shelf(p).slot)];
-    };
-    const auto read_whole = [&](Graph::Port p) {
-      if (domain_of(p) >= 0 && !std::exchange(shelf(p).is_gathered, true)) read_slot(p);
-      ++shelf(p).units;
-    };
-    for (const auto& unit : plan_.units) {
-      for (const auto& p : outside_ports(unit)) read_whole(p);
-      for (const int n : unit.nodes) {
-        if (unit.domain < 0) continue;
-        item_ports_[at(n)] = item_ports(n);
-        for (const auto& p : item_ports_[at(n)]) read_slot(p);
-        auto& awaited = domains_[at(unit.domain)].awaited;
-        rank_[at(n)] = awaited.size();
-        awaited.push_back(static_cast<int>(awaited_nodes(n).size()));
-      }
+    for (std::size_t u = 0; u < plan_.units.size(); ++u) {
+      for (const auto& p : outside_ports(plan_.units[u])) read_whole(p);
+      if (plan_.units[u].domain >= 0) read_items(static_cast<int>(u));
     }
     for (const auto& output : graph_.outputs) read_whole(output.source);
+    for (std::size_t u = 0; u < plan_.units.size(); ++u)
+      if (plan_.units[u].domain >= 0) lay_out_sweep(static_cast<int>(u));
+  }
+
+  void give_slot(Graph::Port p) {
+    auto& held = domains_[at(domain_of(p))].held;
+    if (shelf(p).slot >= 0) return;
+    shelf(p).slot = static_cast<int>(held.size());
+    held.emplace_back();
+  }
+  void read_whole(Graph::Port p) {
+    if (domain_of(p) >= 0 && !std::exchange(shelf(p).is_gathered, true)) give_slot(p);
+    ++shelf(p).units;
+  }
+  void read_items(int u) {
+    for (const int n : plan_.units[at(u)].nodes)
+      for_each_source(graph_, n, [&](std::size_t, Graph::Port source, Way w) {
+        if (w != Way::item) return;
+        give_slot(source);
+        shelf(source).last_sweep = u;
+      });
+  }
+
+  void lay_out_sweep(int u) {
+    const auto& unit = plan_.units[at(u)];
+    auto& sweep = sweeps_[at(u)];
+    sweep.readers.resize(domains_[at(unit.domain)].held.size());
+    std::vector<Graph::Port> fetched;
+    std::size_t station = 0;
+    for (const auto& run : unit.runs) {
+      auto& steps = sweep.runs.emplace_back();
+      for (const int n : run.nodes) {
+        auto& step = steps.emplace_back(Step{n, station++, {}, {}});
+        for_each_source(graph_, n, [&](std::size_t input, Graph::Port source, Way w) {
+          if (w != Way::item) return;
+          step.takes.push_back({input, at(shelf(source).slot)});
+          ++sweep.readers[at(shelf(source).slot)];
+          if (plan_.unit[at(source.node)] != u) add_once(fetched, source);
+        });
+        for (const auto& s : shelves_[at(n)]) step.puts.push_back(s.slot);
+      }
+    }
+    for (const auto& p : fetched) sweep.fetched.push_back({at(shelf(p).slot), shelf(p).last_sweep == u});
+    for_each_node(unit, [&](int n) {
+      for (const auto& s : shelves_[at(n)]) {
+        if (!s.is_gathered && s.last_sweep <= u) continue;
+        sweep.held.push_back(at(s.slot));
+        ++sweep.readers[at(s.slot)];
+      }
+    });
   }
 
   // ---- the flow graph: nodes and edges ------------------------------------
 
   void build() {
-    sweeps_ = std::vector<Sweep>(plan_.units.size());
-    workers_.resize(graph_.nodes.size());
     for (std::size_t u = 0; u < plan_.units.size(); ++u) {
       const auto& unit = plan_.units[u];
       if (unit.domain < 0)
@@ -185,28 +213,34 @@ class FlowRun {
     }
   }
 
+  /// A worker for every run of nodes.
   void build_sweep(std::size_t u) {
     auto& pump = sweeps_[u].pump;
-    pump = std::make_unique<Pump>(flow_, flow::serial,
-                                  [this, u](Ticket, Pump::output_ports_type& ports) { pump_one(u, ports); });
+    pump = std::make_unique<Pump>(flow_, flow::serial, [this, u](Flight* flight, Pump::output_ports_type& ports) {
+      pump_one(u, *flight, ports);
+    });
     starts_.push_back(std::make_unique<Start>(flow_, [this, u](flow::continue_msg) { start_sweep(u); }));
-    for (const int n : plan_.units[u].nodes) {
-      workers_[at(n)] = std::make_unique<Worker>(flow_, flow::unlimited, [this, u, n](FlowItem* item) {
-        work(u, n, *item);
-        return item;
-      });
-      const auto awaited = awaited_nodes(n);
-      if (awaited.empty()) {
-        flow::make_edge(flow::output_port<0>(*pump), *workers_[at(n)]);
-      } else if (awaited.size() == 1) {
-        flow::make_edge(*workers_[at(awaited[0])], *workers_[at(n)]);
+    const std::size_t first = workers_.size();
+    const auto& runs = plan_.units[u].runs;
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      workers_.push_back(std::make_unique<Worker>(flow_, flow::unlimited, [this, u, r](Flight* flight) {
+        work(u, r, *flight);
+        return flight;
+      }));
+      auto& worker = *workers_.back();
+      const auto& after = runs[r].after;
+      if (after.empty()) {
+        flow::make_edge(flow::output_port<0>(*pump), worker);
+      } else if (after.size() == 1) {
+        flow::make_edge(*workers_[first + at(after[0])], worker);
       } else {
-        joins_.push_back(std::make_unique<Join>(
-            flow_, flow::unlimited, [rank = rank_[at(n)]](FlowItem* item, Join::output_ports_type& ports) noexcept {
-              if (item->awaited[rank].fetch_sub(1) == 1) std::get<0>(ports).try_put(item);
-            }));
-        for (const int m : awaited) flow::make_edge(*workers_[at(m)], *joins_.back());
-        flow::make_edge(flow::output_port<0>(*joins_.back()), *workers_[at(n)]);
+        joins_.push_back(std::make_unique<Join>(flow_, flow::unlimited,
+                                                [r](Flight* flight, Join::output_ports_type& ports) noexcept {
+                                                  if (flight->awaited[r].fetch_sub(1) == 1)
+                                                    std::get<0>(ports).try_put(flight);
+                                                }));
+        for (const int before : after) flow::make_edge(*workers_[first + at(before)], *joins_.back());
+        flow::make_edge(flow::output_port<0>(*joins_.back()), worker);
       }
     }
   }
@@ -226,14 +260,16 @@ class FlowRun {
     }
   }
 
-  void fix_inputs(int n) {
-    fixed_[at(n)] = caller_.fixed_inputs(
+  std::vector<Input> fixed_inputs(int n) {
+    return caller_.fixed_inputs(
         n, [&](Graph::Port p) { return shelf(p).single; }, [&](Graph::Port p) { return shelf(p).gathered; });
   }
 
-  void finish(const Plan::Unit& unit) {
-    for_each_node(unit, [&](int n) { fixed_[at(n)].clear(); });
-    for (const auto& p : outside_ports(unit))
+  void finish(std::size_t u) {
+    for (auto& flight : sweeps_[u].flights)
+      for (auto* station : flight.stations) station->inputs.clear();
+    sweeps_[u].flights.clear();
+    for (const auto& p : outside_ports(plan_.units[u]))
       if (--shelf(p).units == 0) {
         shelf(p).single = {};
         shelf(p).gathered = {};
@@ -243,11 +279,12 @@ class FlowRun {
   void run_once(std::size_t u) {
     guarded([&] {
       const int n = plan_.units[u].nodes[0];
-      fix_inputs(n);
-      auto values = caller_.call(n, "", std::move(fixed_[at(n)]));
+      auto& station = caller_.station(n, fixed_inputs(n));
+      auto values = caller_.call(station, "");
+      station.inputs.clear();
       for (std::size_t p = 0; p < values.size(); ++p)
         if (shelves_[at(n)][p].units > 0) shelves_[at(n)][p].single = std::move(values[p]);
-      finish(plan_.units[u]);
+      finish(u);
     });
   }
 
@@ -255,85 +292,120 @@ class FlowRun {
     guarded([&] {
       const auto& unit = plan_.units[u];
       auto& sweep = sweeps_[u];
-      for_each_node(unit, [&](int n) { fix_inputs(n); });
-      if (unit.opens) sweep.source.emplace(caller_, unit.domain, std::move(fixed_[at(unit.domain)]));
+      for (int i = 0; i < in_flight_; ++i) sweep.flights.emplace_back(sweep.readers.size(), unit.runs.size());
+      for (const auto& run : unit.runs)
+        for (const int n : run.nodes) {
+          const auto fixed = fixed_inputs(n);
+          for (auto& flight : sweep.flights) flight.stations.push_back(&caller_.station(n, fixed));
+        }
+      if (unit.opens) sweep.source.emplace(caller_, unit.domain, fixed_inputs(unit.domain));
       sweep.out = in_flight_;
-      for (int i = 0; i < in_flight_; ++i) sweep.pump->try_put({});
+      for (auto& flight : sweep.flights) sweep.pump->try_put(&flight);
     });
   }
 
-  /// A ticket has come: let the next item in. The pump is a serial node.
-  void pump_one(std::size_t u, Pump::output_ports_type& ports) {
+  /// A flight has come: let the next item in. The pump is a serial node.
+  void pump_one(std::size_t u, Flight& flight, Pump::output_ports_type& ports) {
     guarded([&] {
       auto& sweep = sweeps_[u];
       --sweep.out;
-      if (FlowItem* item = next_item(u)) {
+      for (;;) {
+        if (flight.key) hold(u, flight);
+        if (!next_item(u, flight)) break;
+        if (sweep.runs.empty()) continue;
         ++sweep.out;
-        if (plan_.units[u].nodes.empty())
-          sweep.pump->try_put({});
-        else
-          std::get<0>(ports).try_put(item);
-      } else if (sweep.out == 0) {
-        gather(u);
-        finish(plan_.units[u]);
-        std::get<1>(ports).try_put({});
+        std::get<0>(ports).try_put(&flight);
+        return;
       }
+      if (sweep.out > 0) return;
+      gather(u);
+      finish(u);
+      std::get<1>(ports).try_put({});
     });
   }
 
-  FlowItem* next_item(std::size_t u) {
+  /// Keeps what is still wanted of an item that has passed.
+  void hold(std::size_t u, Flight& flight) {
+    auto& held = domains_[at(plan_.units[u].domain)].held;
+    for (const auto slot : sweeps_[u].held) {
+      if (held[slot].size() <= flight.index) held[slot].resize(flight.index + 1);
+      held[slot][flight.index] = std::move(flight.values[slot]);
+    }
+    flight.key = nullptr;
+  }
+
+  bool next_item(std::size_t u, Flight& flight) {
     const auto& unit = plan_.units[u];
     auto& sweep = sweeps_[u];
     auto& domain = domains_[at(unit.domain)];
-    FlowItem* item = nullptr;
     if (!unit.opens) {
-      if (sweep.next < domain.items.size()) item = &domain.items[sweep.next++];
-    } else if (sweep.source) {
-      if (auto made = sweep.source->next()) {
-        item = &domain.items.emplace_back(std::move(made->key), domain.readers, domain.awaited.size());
-        for (std::size_t n = 0; n < domain.awaited.size(); ++n) item->awaited[n] = domain.awaited[n];
-        put(unit.domain, *item, std::move(made->value));
-      } else {
-        sweep.source.reset();
-        caller_.domain_size(unit.domain, domain.items.size());
+      if (sweep.next == domain.keys.size()) return false;
+      flight.index = sweep.next++;
+      for (const auto& [slot, last] : sweep.fetched) {
+        auto& value = domain.held[slot][flight.index];
+        flight.values[slot] = last ? std::move(value) : value;
       }
+    } else {
+      if (!sweep.source) return false;
+      auto made = sweep.source->next();
+      if (!made) {
+        sweep.source.reset();
+        caller_.domain_size(unit.domain, domain.keys.size());
+        return false;
+      }
+      flight.index = domain.keys.size();
+      domain.keys.push_back(std::move(made->key));
+      for (std::size_t p = 0; p < made->value.size(); ++p)
+        if (const int slot = shelves_[at(unit.domain)][p].slot; slot >= 0)
+          flight.values[at(slot)] = std::move(made->value[p]);
     }
-    if (item) item->left = static_cast<int>(unit.nodes.size());
-    return item;
+    flight.key = &domain.keys[flight.index];
+    for (std::size_t s = 0; s < sweep.readers.size(); ++s)
+      flight.readers[s].store(sweep.readers[s], std::memory_order_relaxed);
+    for (std::size_t r = 0; r < unit.runs.size(); ++r)
+      flight.awaited[r].store(static_cast<int>(unit.runs[r].after.size()), std::memory_order_relaxed);
+    flight.left.store(static_cast<int>(unit.runs.size()), std::memory_order_relaxed);
+    return true;
   }
 
-  void work(std::size_t u, int n, FlowItem& item) {
+  void work(std::size_t u, std::size_t r, Flight& flight) {
     guarded([&] {
-      auto inputs = fixed_[at(n)];
-      caller_.add_item_inputs(n, inputs, [&](Graph::Port p) -> const Value& { return item.values[at(shelf(p).slot)]; });
-      put(n, item, caller_.call(n, item.key, std::move(inputs)));
-      for (const auto& p : item_ports_[at(n)]) release(item, at(shelf(p).slot));
-      if (--item.left == 0) sweeps_[u].pump->try_put({});
+      auto& sweep = sweeps_[u];
+      for (const auto& step : sweep.runs[r]) {
+        auto& station = *flight.stations[step.station];
+        for (const auto& [port, slot] : step.takes) station.give(port, take(flight, slot));
+        auto values = caller_.call(station, *flight.key);
+        for (std::size_t p = 0; p < values.size(); ++p)
+          if (step.puts[p] >= 0) flight.values[at(step.puts[p])] = std::move(values[p]);
+      }
+      if (--flight.left == 0) sweep.pump->try_put(&flight);
     });
   }
 
-  void put(int n, FlowItem& item, std::vector<Value> values) {
-    for (std::size_t p = 0; p < values.size(); ++p)
-      if (const int slot = shelves_[at(n)][p].slot; slot >= 0) item.values[at(slot)] = std::move(values[p]);
-  }
-
-  static void release(FlowItem& item, std::size_t slot) {
-    if (--item.readers[slot] == 0) item.values[slot] = {};
+  /// The last reader takes the value itself, which costs less than a copy.
+  static Value take(Flight& flight, std::size_t slot) {
+    auto& readers = flight.readers[slot];
+    if (readers.load(std::memory_order_acquire) == 1) return std::move(flight.values[slot]);
+    Value value = flight.values[slot];
+    if (readers.fetch_sub(1) == 1) flight.values[slot] = {};
+    return value;
   }
 
   /// All items have passed: put together what is read whole.
   void gather(std::size_t u) {
     const auto& unit = plan_.units[u];
-    auto& items = domains_[at(unit.domain)].items;
+    auto& domain = domains_[at(unit.domain)];
     for_each_node(unit, [&](int n) {
       for (auto& shelf : shelves_[at(n)]) {
         if (!shelf.is_gathered) continue;
+        const bool last = shelf.last_sweep <= static_cast<int>(u);
+        auto& held = domain.held[at(shelf.slot)];
         auto all = std::make_shared<std::vector<Item<Value>>>();
-        for (auto& item : items) {
-          if (const auto& value = item.values[at(shelf.slot)]) all->push_back({item.key, value});
-          release(item, at(shelf.slot));
-        }
-        shelf.gathered = {items.size(), std::move(all)};
+        all->reserve(held.size());
+        for (std::size_t i = 0; i < held.size(); ++i)
+          if (held[i]) all->push_back({domain.keys[i], last ? std::move(held[i]) : held[i]});
+        shelf.gathered = {domain.keys.size(), std::move(all)};
+        if (last) held = {};
       }
     });
   }
@@ -341,8 +413,14 @@ class FlowRun {
   std::vector<RunResult::Output> outputs() {
     std::vector<RunResult::Output> all;
     for (const auto& output : graph_.outputs) {
-      RunResult::Output out{output.name, domain_of(output.source) >= 0, shelf(output.source).single, {}};
-      if (out.stream) out.items = *shelf(output.source).gathered.values;
+      auto& from = shelf(output.source);
+      RunResult::Output out{output.name, domain_of(output.source) >= 0, from.single, {}};
+      if (out.stream) {
+        if (--from.units == 0)
+          out.items = std::move(*from.gathered.values);
+        else
+          out.items = *from.gathered.values;
+      }
       all.push_back(std::move(out));
     }
     return all;
@@ -353,18 +431,15 @@ class FlowRun {
   const Plan plan_;
   const int in_flight_;
 
-  std::vector<std::vector<Shelf>> shelves_;           // [node][port]
-  std::vector<Domain> domains_;                       // [source]
-  std::vector<std::vector<Input>> fixed_;             // [node]
-  std::vector<std::vector<Graph::Port>> item_ports_;  // [node]
-  std::vector<std::size_t> rank_;                     // [node] among the nodes of its domain
+  std::vector<std::vector<Shelf>> shelves_;  // [node][port]
+  std::vector<Domain> domains_;              // [source]
   std::atomic<bool> failed_{false};
   std::exception_ptr thrown_;
 
   flow::graph flow_;
-  std::vector<Sweep> sweeps_;                     // [unit]
-  std::vector<std::unique_ptr<Start>> starts_;    // [unit]
-  std::vector<std::unique_ptr<Worker>> workers_;  // [node]
+  std::vector<Sweep> sweeps_;                   // [unit]
+  std::vector<std::unique_ptr<Start>> starts_;  // [unit]
+  std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<std::unique_ptr<Join>> joins_;
 };
 

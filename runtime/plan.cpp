@@ -96,7 +96,38 @@ class Planner {
     for (const int n : unit.nodes) plan_.unit[at(n)] = index;
     if (unit.opens) plan_.unit[at(unit.domain)] = index, reads(unit.domain);
     for (const int n : unit.nodes) reads(n);
+    if (unit.domain >= 0) unit.runs = runs(unit.nodes);
     plan_.units.push_back(std::move(unit));
+  }
+
+  /// The nodes of its own sweep that a node waits for, each once.
+  std::vector<int> awaited(int n) const {
+    std::vector<int> nodes;
+    for_each_source(graph_, n, [&](std::size_t, Graph::Port source, Way w) {
+      const bool own =
+          w == Way::item && !node(source.node).type->makes_stream && plan_.unit[at(source.node)] == plan_.unit[at(n)];
+      if (own && std::find(nodes.begin(), nodes.end(), source.node) == nodes.end()) nodes.push_back(source.node);
+    });
+    return nodes;
+  }
+
+  std::vector<Plan::Run> runs(const std::vector<int>& nodes) const {
+    std::vector<int> waiting(graph_.nodes.size(), 0), run(graph_.nodes.size(), -1);
+    for (const int n : nodes)
+      for (const int m : awaited(n)) ++waiting[at(m)];
+    std::vector<Plan::Run> all;
+    for (const int n : nodes) {
+      const auto before = awaited(n);
+      if (before.size() == 1 && waiting[at(before[0])] == 1) {
+        run[at(n)] = run[at(before[0])];
+      } else {
+        run[at(n)] = static_cast<int>(all.size());
+        all.emplace_back();
+        for (const int m : before) all.back().after.push_back(run[at(m)]);
+      }
+      all[at(run[at(n)])].nodes.push_back(n);
+    }
+    return all;
   }
 
   const Graph& graph_;

@@ -26,12 +26,19 @@ void for_each_source(const Graph& graph, int node, F f) {
 /// but itself: a unit starts when the units it reads are complete. So a limit
 /// on the items in flight cannot lock the run up.
 struct Plan {
+  /// Nodes of a sweep in a line: each waits for the one before alone, which nothing else waits for. There is
+  /// nothing to gain from running them in parallel for one item.
+  struct Run {
+    std::vector<int> nodes;
+    std::vector<int> after;  ///< the runs of the sweep that the first node waits for
+  };
   /// One call of a node that runs once, or a sweep over the items of a domain.
   struct Unit {
-    int domain = -1;         ///< the source whose items are swept, -1 for a single call
-    bool opens = false;      ///< the first sweep of its domain draws the items from the source
-    std::vector<int> nodes;  ///< in topological order, without the source
-    std::vector<int> after;  ///< the units that must be complete
+    int domain = -1;             ///< the source whose items are swept, -1 for a single call
+    bool opens = false;          ///< the first sweep of its domain draws the items from the source
+    std::vector<int> nodes;      ///< in topological order, without the source
+    std::vector<int> after;      ///< the units that must be complete
+    std::vector<Run> runs = {};  ///< of a sweep: its nodes again
   };
   std::vector<Unit> units;  ///< in an order in which they can run one by one
   std::vector<int> unit;    ///< of each node (for a source: the sweep that opens it)

@@ -33,23 +33,27 @@ std::vector<RunResult::Output> run_serial(const Graph& graph, Caller& caller) {
   for (std::size_t n = 0; n < count; ++n) {
     const auto& node = graph.nodes[n];
     const int self = static_cast<int>(n);
-    const auto fixed = caller.fixed_inputs(self, single, gathered);
+    auto fixed = caller.fixed_inputs(self, single, gathered);
     if (node.type->makes_stream) {
-      OpenSource source(caller, self, fixed);
+      OpenSource source(caller, self, std::move(fixed));
       while (auto item = source.next()) {
         keys[n].push_back(std::move(item->key));
         rows[n].push_back(std::move(item->value));
       }
       caller.domain_size(self, keys[n].size());
     } else if (node.domain < 0) {
-      rows[n].push_back(caller.call(self, "", fixed));
+      rows[n].push_back(caller.call(caller.station(self, std::move(fixed)), ""));
     } else {
-      for (std::size_t i = 0; i < keys[at(node.domain)].size(); ++i) {
-        auto inputs = fixed;
-        caller.add_item_inputs(self, inputs,
-                               [&](Graph::Port p) -> const Value& { return rows[at(p.node)][i][at(p.port)]; });
-        rows[n].push_back(caller.call(self, keys[at(node.domain)][i], std::move(inputs)));
+      auto& station = caller.station(self, std::move(fixed));
+      const auto& names = keys[at(node.domain)];
+      rows[n].reserve(names.size());
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        for_each_source(graph, self, [&](std::size_t input, Graph::Port source, Way w) {
+          if (w == Way::item) station.give(input, rows[at(source.node)][i][at(source.port)]);
+        });
+        rows[n].push_back(caller.call(station, names[i]));
       }
+      station.inputs.clear();
     }
     for (std::size_t m = 0; m <= n; ++m)
       if (last_reader[m] == n) rows[m].clear();
