@@ -95,8 +95,8 @@ class Caller::Watch {
   /// How many calls the next one stands for.
   static double weight(const NodeStats& books) {
     constexpr std::uint64_t one_of = 32;
-    constexpr double cheap = 1e-5;  // seconds
-    if (books.calls < one_of || books.wall > cheap * static_cast<double>(books.calls)) return 1e-9;
+    constexpr double cheap = 1e-5;  // seconds of processor time: a thread may have had to wait for its turn
+    if (books.calls < one_of || books.cpu > cheap * static_cast<double>(books.calls)) return 1e-9;
     return books.calls % one_of == 0 ? 1e-9 * one_of : 0;
   }
 

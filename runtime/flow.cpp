@@ -8,6 +8,7 @@
 #include <deque>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -81,7 +82,10 @@ struct Sweep {
 
   std::optional<OpenSource> source;  // of the sweep that opens its domain
   std::size_t next = 0;              // item, of a later sweep
-  int out = 0;                       // flights not in the pump
+  int out = 0;                       // flights that may still bring an item
+  std::mutex door;                   // of what follows
+  std::atomic<bool> drawing{false};
+  std::vector<Flight*> waiting;  // for the one that draws to leave
   std::deque<Flight> flights;
   std::unique_ptr<Pump> pump;
 };
@@ -304,24 +308,47 @@ class FlowRun {
     });
   }
 
-  /// A flight has come: let the next item in. The pump is a serial node.
+  /// A flight has come: let the next item in.
   void pump_one(std::size_t u, Flight& flight, Pump::output_ports_type& ports) {
     guarded([&] {
       auto& sweep = sweeps_[u];
-      --sweep.out;
-      for (;;) {
-        if (flight.key) hold(u, flight);
-        if (!next_item(u, flight)) break;
-        if (sweep.runs.empty()) continue;
-        ++sweep.out;
-        std::get<0>(ports).try_put(&flight);
-        return;
-      }
-      if (sweep.out > 0) return;
+      if (!enter(sweep, flight)) return;
+      bool drawn = draw(u, flight);
+      while (drawn && sweep.runs.empty()) drawn = draw(u, flight);
+      const bool over = !drawn && --sweep.out == 0;
+      leave(sweep);
+      if (drawn) std::get<0>(ports).try_put(&flight);
+      if (!over) return;
       gather(u);
       finish(u);
       std::get<1>(ports).try_put({});
     });
+  }
+
+  /// One thread at a time draws items. Another one looks again for about as long as a cheap item takes; then its flight
+  /// is left to the one that draws, as the thread has better to do than to wait for a slow source.
+  static bool enter(Sweep& sweep, Flight& flight) {
+    for (int i = 0; i < 1000 && sweep.drawing.load(std::memory_order_relaxed); ++i) {
+    }
+    const std::lock_guard lock(sweep.door);
+    if (!sweep.drawing.exchange(true)) return true;
+    sweep.waiting.push_back(&flight);
+    return false;
+  }
+  static void leave(Sweep& sweep) {
+    std::vector<Flight*> waiting;
+    {
+      const std::lock_guard lock(sweep.door);
+      sweep.drawing = false;
+      waiting.swap(sweep.waiting);
+    }
+    for (auto* flight : waiting) sweep.pump->try_put(flight);
+  }
+
+  /// The item of the flight has passed; takes the next one along, if there is one.
+  bool draw(std::size_t u, Flight& flight) {
+    if (flight.key) hold(u, flight);
+    return next_item(u, flight);
   }
 
   /// Keeps what is still wanted of an item that has passed.
@@ -368,18 +395,31 @@ class FlowRun {
     return true;
   }
 
+  /// A line that is all of its sweep goes on with the next item at once: that saves two tasks an item.
   void work(std::size_t u, std::size_t r, Flight& flight) {
     guarded([&] {
       auto& sweep = sweeps_[u];
-      for (const auto& step : sweep.runs[r]) {
-        auto& station = *flight.stations[step.station];
-        for (const auto& [port, slot] : step.takes) station.give(port, take(flight, slot));
-        auto values = caller_.call(station, *flight.key);
-        for (std::size_t p = 0; p < values.size(); ++p)
-          if (step.puts[p] >= 0) flight.values[at(step.puts[p])] = std::move(values[p]);
+      bool drawn = true;
+      while (drawn) {
+        for (const auto& step : sweep.runs[r]) do_step(step, flight);
+        if (sweep.runs.size() > 1) {
+          if (--flight.left == 0) sweep.pump->try_put(&flight);
+          return;
+        }
+        if (!enter(sweep, flight)) return;
+        drawn = draw(u, flight);
+        leave(sweep);
       }
-      if (--flight.left == 0) sweep.pump->try_put(&flight);
+      sweep.pump->try_put(&flight);
     });
+  }
+
+  void do_step(const Step& step, Flight& flight) {
+    auto& station = *flight.stations[step.station];
+    for (const auto& [port, slot] : step.takes) station.give(port, take(flight, slot));
+    auto values = caller_.call(station, *flight.key);
+    for (std::size_t p = 0; p < values.size(); ++p)
+      if (step.puts[p] >= 0) flight.values[at(step.puts[p])] = std::move(values[p]);
   }
 
   /// The last reader takes the value itself, which costs less than a copy.

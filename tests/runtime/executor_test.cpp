@@ -141,6 +141,59 @@ TEST_P(ExecutorTest, KeepsGoingAndListsWhatFailed) {
   EXPECT_EQ(result.nodes[static_cast<std::size_t>(two)].skipped, 1u);
 }
 
+// Nodes in a line with a failure, a dropped item and an absent optional input in the middle; what the line makes on the
+// way is collected, and read again in a later sweep.
+TEST_P(ExecutorTest, ALineOfNodesMayFailDropAndBeReadFromTheSide) {
+  options_.keep_going = true;
+  options_.threads = 4;
+  const int source = b_.add("source", "toy.source", {}, {{"to", 200}});
+  const int first = b_.add("first", "toy.map", {source});
+  const int fails = b_.add("fails", "toy.fail_at", {first}, {{"key", "u7"}});
+  const int drops = b_.add("drops", "toy.drop", {fails});
+  const int joins = b_.add("joins", "toy.join", {fails, source, drops});
+  const int last = b_.add("last", "toy.map", {joins});
+  const int model = b_.add("model", "toy.train", {drops});
+  b_.output("last", last);
+  b_.output("later", b_.add("later", "toy.join", {first, model, drops}));
+  const auto result = go();
+  EXPECT_EQ(result.output("last").items.size(), 199u);
+  EXPECT_EQ(result.output("later").items.size(), 200u);
+  const auto stats = [&](int n) { return result.nodes[static_cast<std::size_t>(n)]; };
+  EXPECT_EQ(stats(fails).failed, 1u);
+  EXPECT_EQ(stats(drops).skipped, 1u);
+  EXPECT_EQ(stats(joins).skipped, 1u);
+  EXPECT_LT(stats(drops).out[0].values, 199u);
+  EXPECT_EQ(stats(model).in[0], stats(drops).out[0]);
+  RunOptions other = options_;
+  other.executor = options_.executor == Executor::flow ? Executor::serial : Executor::flow;
+  const auto again = run(b_.graph, other);
+  for (const char* name : {"last", "later"})
+    for (std::size_t i = 0; i < result.output(name).items.size(); ++i) {
+      ASSERT_EQ(result.output(name).items[i].key, again.output(name).items.at(i).key);
+      ASSERT_EQ(result.output(name).items[i].value.get<Mark>().bits,
+                again.output(name).items[i].value.get<Mark>().bits);
+    }
+}
+
+TEST_P(ExecutorTest, ItemsInALineRunBesideEachOther) {
+  if (GetParam() == Executor::serial) GTEST_SKIP() << "one at a time";
+  std::atomic<bool> cancel{false};
+  options_.cancel = &cancel;
+  struct Busy : RunObserver {
+    explicit Busy(std::atomic<bool>& c) : cancel(c) {}
+    void call_started(int node, const std::string&) override {
+      if (node == 2 && ++at_work == 2) cancel = true;
+    }
+    std::atomic<bool>& cancel;
+    std::atomic<int> at_work{0};
+  } busy(cancel);
+  options_.observers = {&busy};
+  const int source = b_.add("source", "toy.source");
+  b_.output("out", b_.add("endless", "toy.endless", {b_.add("map", "toy.map", {source})}));
+  EXPECT_THROW(go(), Cancelled);  // ends only if two items are at the endless node
+  EXPECT_EQ(busy.at_work, 2);
+}
+
 TEST_P(ExecutorTest, AKeyThatComesTwiceIsAnError) {
   b_.output("out", b_.add("map", "toy.map", {b_.add("source", "toy.twice")}));
   const auto e = error();

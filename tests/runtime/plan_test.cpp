@@ -69,5 +69,27 @@ TEST_F(PlanTest, TwoDomainsThatCollectEachOther) {
   EXPECT_NE(plan.unit[static_cast<std::size_t>(z)], plan.unit[static_cast<std::size_t>(w)]);
 }
 
+// a - b, and from b on two ways: c - d, and e; f joins them, g follows.
+TEST_F(PlanTest, NodesInALineMakeARun) {
+  const int source = b_.add("source", "toy.source");
+  const int a = b_.add("a", "toy.map", {source});
+  const int b = b_.add("b", "toy.map", {a});
+  const int c = b_.add("c", "toy.map", {b});
+  const int d = b_.add("d", "toy.map", {c});
+  const int e = b_.add("e", "toy.map", {b});
+  const int f = b_.add("f", "toy.join", {d, e, source});
+  const int g = b_.add("g", "toy.map", {f});
+  const Plan plan = make_plan(b_.graph);
+  const auto& runs = plan.units.at(0).runs;
+  ASSERT_EQ(runs.size(), 4u);
+  EXPECT_EQ(runs[0].nodes, (std::vector<int>{a, b}));
+  EXPECT_EQ(runs[1].nodes, (std::vector<int>{c, d}));
+  EXPECT_EQ(runs[2].nodes, (std::vector<int>{e}));
+  EXPECT_EQ(runs[3].nodes, (std::vector<int>{f, g}));
+  EXPECT_TRUE(runs[0].after.empty());
+  EXPECT_EQ(runs[1].after, (std::vector<int>{0}));
+  EXPECT_EQ(runs[3].after, (std::vector<int>{1, 2}));
+}
+
 }  // namespace
 }  // namespace talkgraph
