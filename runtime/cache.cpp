@@ -106,6 +106,20 @@ Cache::Cache(fs::path folder, std::uint64_t limit) : folder_(fs::absolute(folder
     if (abandoned(work.path())) fs::remove_all(work.path(), error);
 }
 
+Cache::Claim::Claim(const Cache& cache, const Key& key) : cache_(&cache), key_(key) {
+  std::unique_lock lock(cache.mutex_);
+  cache.unclaimed_.wait(lock, [&] { return cache.claimed_.insert(key).second; });
+}
+
+Cache::Claim::~Claim() {
+  if (!cache_) return;
+  {
+    const std::lock_guard lock(cache_->mutex_);
+    cache_->claimed_.erase(key_);
+  }
+  cache_->unclaimed_.notify_all();
+}
+
 fs::path Cache::default_folder() {
   const auto in = [](const char* name) { return std::getenv(name) ? fs::path(std::getenv(name)) : fs::path(); };
   if (const auto own = in("TALKGRAPH_CACHE"); !own.empty()) return own;

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "graph/json.h"
@@ -39,6 +43,20 @@ class Cache {
     std::vector<Value> outputs;         ///< one a port; empty where there is nothing
     std::vector<std::string> warnings;  ///< that the call gave
     double seconds = 0;                 ///< that it took
+  };
+
+  /// The right to make a result; until it goes, others of this process who want the same one wait.
+  class Claim {
+   public:
+    Claim() = default;
+    Claim(const Cache& cache, const Key& key);
+    Claim(Claim&& other) noexcept : cache_(std::exchange(other.cache_, nullptr)), key_(other.key_) {}
+    Claim& operator=(Claim&&) = delete;
+    ~Claim();
+
+   private:
+    const Cache* cache_ = nullptr;
+    Key key_;
   };
 
   /// Makes the folder if need be. Throws std::runtime_error if that cannot be, or if the folder holds other things
@@ -80,6 +98,9 @@ class Cache {
   std::filesystem::path folder_;
   std::uint64_t limit_;
   std::atomic<std::uint64_t> grown_{0};
+  mutable std::mutex mutex_;
+  mutable std::condition_variable unclaimed_;
+  mutable std::set<Key> claimed_;
 };
 
 }  // namespace talkgraph

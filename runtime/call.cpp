@@ -31,6 +31,13 @@ std::string cause_of(const std::exception_ptr& thrown) {
   }
 }
 
+/// Libraries that write files seldom say why they could not.
+std::string disk_note(const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto space = std::filesystem::space(folder, error);
+  return !error && space.available < 1'000'000 ? " (the disk is full)" : "";
+}
+
 std::string place_of(const Place& place) {
   if (!place.source) return "";
   return fmt::format("{}:{}:{}", place.source->name, place.line, place.column);
@@ -212,9 +219,11 @@ std::vector<Value> Caller::call(Station& station, const std::string& item) {
     case Need::load:
       outputs = load(station);
       break;
-    case Need::call:
-      outputs = compute(station);
+    case Need::call: {
+      const auto claim = keeper_ ? keeper_->claim(n, item) : Cache::Claim();
+      outputs = keeper_ && keeper_->made_meanwhile(n, item) ? load(station) : compute(station);
       break;
+    }
   }
   for (const auto p : station.item_ports) station.inputs[p].value = {};
   outputs.resize(node(n).type->outputs.size());
@@ -265,7 +274,7 @@ std::vector<Value> Caller::compute(Station& station) {
     } catch (const Cancelled&) {
       throw;
     } catch (...) {
-      failed(station, item, cause_of(std::current_exception()));
+      failed(station, item, cause_of(std::current_exception()) + (type.sink ? disk_note(options_.folder) : ""));
       return {};
     }
     if (kept) result.seconds = 1e-9 * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - start);

@@ -29,12 +29,26 @@ Keeper::Keeper(const Graph& graph, Cache& cache, fs::path folder, const std::ato
 }
 
 void Keeper::give_up(const std::string& why) {
-  if (!full_.exchange(true)) warn_(fmt::format("from here on no results are kept for the next run: {}", why));
+  if (full_.exchange(true)) return;
+  std::error_code error;
+  const auto space = fs::space(cache_.folder(), error);
+  const bool full = !error && space.available < 16'000'000;
+  warn_(fmt::format("from here on no results are kept for the next run: {}{}", why, full ? " (the disk is full)" : ""));
 }
 
 bool Keeper::keeps(int n) const {
   const auto& type = *graph_.nodes[static_cast<std::size_t>(n)].type;
   return type.stored || type.sink;
+}
+
+Cache::Claim Keeper::claim(int n, const std::string& item) const {
+  const Key key = keeps(n) ? forecast_.key(n, item) : Key{};
+  return key ? Cache::Claim(cache_, key) : Cache::Claim();
+}
+
+bool Keeper::made_meanwhile(int n, const std::string& item) const {
+  const Key key = keeps(n) ? forecast_.key(n, item) : Key{};
+  return key && cache_.has(key);
 }
 
 Cache::Result Keeper::load(int n, const std::string& item) const {

@@ -22,6 +22,10 @@ class Keeper {
 
   /// Whether results of a node are kept.
   bool keeps(int node) const;
+  /// For a call whose result is kept: waits while another run of this process makes the same.
+  Cache::Claim claim(int node, const std::string& item) const;
+  /// Whether the result is there by now, though the forecast did not see it.
+  bool made_meanwhile(int node, const std::string& item) const;
   /// Throws Cache::Damaged.
   Cache::Result load(int node, const std::string& item) const;
   /// Keeps a result; `written` holds what a sink wrote, or is empty. What cannot be kept is not an error of the run.

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "runtime/executor.h"
 #include "runtime/recipe.h"
@@ -102,6 +103,23 @@ TEST_P(CachedRun, ANewItemAloneIsMade) {
   EXPECT_EQ(stats(result, longer, "first").calls, 1u);
   EXPECT_EQ(stats(result, longer, "first").loaded, 10u);
   EXPECT_EQ(stats(result, longer, "model").calls, 1u);
+}
+
+TEST_P(CachedRun, RunsBesideEachOtherMakeAResultOnce) {
+  const Graph g = graph(1, 2, 30);
+  const auto expected = plain(g);
+  toy::dawdle_at_most = 2000;
+  std::vector<RunResult> results(3);
+  std::vector<std::jthread> runs;
+  for (auto& result : results) runs.emplace_back([&] { result = run(g, options_); });
+  runs.clear();
+  toy::dawdle_at_most = 0;
+  for (const char* name : {"first", "second", "model", "last"}) {
+    std::uint64_t calls = 0;
+    for (const auto& result : results) calls += stats(result, g, name).calls;
+    EXPECT_EQ(calls, stats(run(g, {}), g, name).calls) << name;
+  }
+  for (const auto& result : results) EXPECT_EQ(marks(result), expected);
 }
 
 TEST_P(CachedRun, TheSeedCountsWhereItIsUsed) {
