@@ -203,7 +203,7 @@ int main(int argc, char** argv) {
 
   auto* samples_app = app.add_subcommand("samples", "write recordings and a model for the examples that read files");
   samples_app->add_option("-o,--folder", run.folder, "folder (default samples)");
-  samples_app->add_flag("-q,--quiet", run.quiet, "no progress, only warnings and failures");
+  add_progress(*samples_app, run.progress);
 
   auto* reference_app = app.add_subcommand("reference", "write the reference of all node types in Markdown");
   reference_app->add_option("-o,--folder", output, "folder")->required();

@@ -8,6 +8,7 @@
 #include "cli/run.h"
 #include "nodes/all_nodes.h"
 #include "nodes/media/audio_file.h"
+#include "nodes/types/recording.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
@@ -33,14 +34,16 @@ TEST(CacheCommand, ExportsFollowTheirProvenance) {
       "sound": { "type": "write.hdf5", "in": { "value": "low" } },
       "whole": { "type": "write.hdf5", "in": { "value": "files" } } } })");
   RunCommand run;
-  run.quiet = run.cached = true;
+  run.cached = true;
+  run.progress = ProgressStyle::quiet;
   run.cache = folder.path() / "cache";
   const auto registry = all_nodes();
   const auto calls = [&](const std::string& name) {
     run.folder = folder.path() / name;
     EXPECT_EQ(run_file(graph, run, registry), success);
     std::map<std::string, int> all;
-    for (const auto& node : Json::parse(folder.read(name + "/run.json"))["nodes"]) all[node["name"]] = node["calls"];
+    const Json report = Json::parse(folder.read(name + "/run.json"));
+    for (const auto& node : report["nodes"]) all[node["name"]] = node["calls"];
     return all;
   };
   EXPECT_EQ(calls("first")["sound"], 1);

@@ -93,7 +93,7 @@ TEST(Examples, Run) {
   const test::TemporaryFolder temporary;
   const Registry registry = all_nodes();
   RunCommand run;
-  run.quiet = true;
+  run.progress = ProgressStyle::quiet;
   run.cached = true;
   run.cache = temporary.path() / "cache";
   run.folder = temporary.path() / "samples";
