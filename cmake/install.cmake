@@ -8,8 +8,12 @@ foreach(LIBRARY ${LIBRARIES})
   string(REPLACE talkgraph_ "" NAME ${LIBRARY})
   set_target_properties(${LIBRARY} PROPERTIES EXPORT_NAME ${NAME})
 endforeach()
-# OpenBLAS is linked from a folder of its own.
-set_target_properties(talkgraph PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+# OpenBLAS is linked from a folder of its own; libtalkgraph_codecs.so is loaded from ours, by users' programs as well.
+set(CODECS_DIR ${CMAKE_INSTALL_LIBDIR}/talkgraph)
+file(RELATIVE_PATH TO_CODECS /${CMAKE_INSTALL_BINDIR} /${CODECS_DIR})
+set_target_properties(talkgraph PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON INSTALL_RPATH "$ORIGIN/${TO_CODECS}")
+target_link_options(talkgraph_types INTERFACE $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${CODECS_DIR}>)
+install(TARGETS talkgraph_codecs LIBRARY DESTINATION ${CODECS_DIR})
 install(TARGETS talkgraph ${LIBRARIES} EXPORT talkgraph)
 install(EXPORT talkgraph NAMESPACE talkgraph:: FILE talkgraphTargets.cmake DESTINATION ${PACKAGE_DIR})
 

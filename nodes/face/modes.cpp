@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "nodes/face/render.h"
-#include "nodes/face/strip.h"
+#include "nodes/types/picture_file.h"
 
 namespace talkgraph {
 
@@ -25,7 +25,7 @@ Artifact FaceModes::operator()(const AppearanceModel& model, Context& context) c
   cv::Mat sheet;
   cv::vconcat(lines, sheet);
   const Artifact artifact{name + ".png", "modes of the face model"};
-  write_png(context.folder / artifact.path, sheet);
+  write_picture(context.folder / artifact.path, sheet);
   return artifact;
 }
 

@@ -1,12 +1,11 @@
 #include "nodes/face/strip.h"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "graph/output_file.h"
 #include "nodes/types/item_file.h"
+#include "nodes/types/picture_file.h"
 
 namespace talkgraph {
 namespace {
@@ -24,19 +23,6 @@ cv::Mat tile(const cv::Mat& frame, int width, const std::string& text) {
 }
 
 }  // namespace
-
-void write_png(const std::filesystem::path& path, const cv::Mat& picture) {
-  OutputFile file(path);
-  bool written = false;
-  try {
-    written = cv::imwrite(file.part(), picture);
-  } catch (const cv::Exception&) {
-  }
-  if (!written)
-    throw std::runtime_error(path.string() +
-                             ": the picture cannot be written; is there room, and may one write there?");
-  file.finish();
-}
 
 Artifact FrameStrip::operator()(const Video& video, const FrameLabels* labels, Context& context) const {
   std::vector<cv::Mat> tiles;
@@ -57,7 +43,7 @@ Artifact FrameStrip::operator()(const Video& video, const FrameLabels* labels, C
     tiles[static_cast<std::size_t>(i)].copyTo(
         sheet(cv::Rect({i % across * size.width, i / across * size.height}, size)));
   Artifact artifact = item_file(context, folder, ".png", "strip");
-  write_png(context.folder / artifact.path, sheet);
+  write_picture(context.folder / artifact.path, sheet);
   artifact.title = "frames of " + video.source->name();
   return artifact;
 }

@@ -21,7 +21,4 @@ struct FrameStrip {
 };
 void describe(Description<FrameStrip>& d);
 
-/// Writes a picture as a PNG file. Throws std::runtime_error that names it.
-void write_png(const std::filesystem::path& path, const cv::Mat& picture);
-
 }  // namespace talkgraph

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "nodes/media/video_file.h"
+#include "nodes/types/picture_file.h"
 
 namespace talkgraph {
 

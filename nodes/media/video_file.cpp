@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "graph/key.h"
 #include "nodes/media/ffmpeg.h"
+#include "nodes/types/picture_file.h"
 
 namespace talkgraph {
 namespace {
@@ -87,13 +87,6 @@ bool is_picture_name(const std::string& name) {
   std::string ending = fs::path(name).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   return ending == ".png" || ending == ".jpg" || ending == ".jpeg";
-}
-
-cv::Mat read_picture(const std::string& path) {
-  if (!std::filesystem::exists(path)) throw std::runtime_error(path + ": there is no such file");
-  cv::Mat picture = cv::imread(path, cv::IMREAD_COLOR);
-  if (picture.empty()) throw std::runtime_error(path + ": cannot be decoded as a picture");
-  return picture;
 }
 
 Video open_video(const std::string& path) {

@@ -20,10 +20,6 @@ Video open_video(const std::string& path);
 /// of another size than the first.
 Video open_frame_folder(const std::string& folder, Rational rate);
 
-/// A picture in colour. Throws std::runtime_error naming the file: missing, or
-/// not a picture that can be decoded.
-cv::Mat read_picture(const std::string& path);
-
 /// True for names that end in .png, .jpg or .jpeg, in either case.
 bool is_picture_name(const std::string& name);
 

@@ -1,8 +1,10 @@
 #include "nodes/types/video.h"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
+
+#include "nodes/codecs/codecs.h"
+#include "nodes/types/codec.h"
 
 namespace talkgraph {
 namespace {
@@ -48,13 +50,14 @@ class MemoryVideo final : public VideoSource {
 
 std::vector<std::uint8_t> to_png(const cv::Mat& pixels) {
   std::vector<std::uint8_t> png;
-  if (!pixels.empty()) cv::imencode(".png", pixels, png);
+  if (!pixels.empty()) codec<decltype(codec_encode_png)>("codec_encode_png")(pixels, png);
   return png;
 }
 
 cv::Mat from_png(const std::vector<std::uint8_t>& png) {
   if (png.empty()) return {};
-  cv::Mat pixels = cv::imdecode(png, cv::IMREAD_COLOR);
+  cv::Mat pixels;
+  codec<decltype(codec_decode_picture)>("codec_decode_picture")(png, pixels);
   if (pixels.empty()) throw std::runtime_error("a stored picture cannot be decoded");
   return pixels;
 }

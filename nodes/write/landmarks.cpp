@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "graph/output_file.h"
 #include "nodes/types/item_file.h"
+#include "nodes/types/picture_file.h"
 
 namespace talkgraph {
 namespace {
@@ -22,13 +22,6 @@ void write_pts(const std::filesystem::path& file, const Shape& shape) {
   } catch (const std::invalid_argument& e) {
     throw std::runtime_error(fmt::format("{}: {}", file.string(), e.what()));
   }
-}
-
-void write_picture(const std::filesystem::path& file, const cv::Mat& pixels) {
-  OutputFile whole(file);
-  if (pixels.empty() || !cv::imwrite(whole.part(), pixels))
-    throw std::runtime_error(file.string() + ": the picture cannot be written");
-  whole.finish();
 }
 
 }  // namespace

@@ -1,12 +1,29 @@
 #include "nodes/write/plot.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "graph/output_file.h"
+#include "nodes/codecs/codecs.h"
+#include "nodes/types/codec.h"
 #include "nodes/types/item_file.h"
-#include "nodes/write/png.h"
+#include "nodes/types/picture_file.h"
 
 namespace talkgraph {
+namespace {
+
+cv::Mat draw(const Plot& plot, double scale, const std::filesystem::path& file) {
+  cv::Mat pixels;
+  try {
+    codec<decltype(codec_draw_svg)>("codec_draw_svg")(plot.svg, scale, pixels);
+  } catch (const std::exception& e) {
+    throw std::runtime_error(fmt::format("{}: the plot cannot be drawn: {}", file.string(), e.what()));
+  }
+  return pixels;
+}
+
+}  // namespace
 
 Artifact WritePlot::operator()(const Plot& plot, Context& context) const {
   if (name.empty() && context.item.empty())
@@ -17,7 +34,7 @@ Artifact WritePlot::operator()(const Plot& plot, Context& context) const {
   if (format == PlotFormat::svg)
     write_file(context.folder / path, plot.svg);
   else
-    write_png(context.folder / path, plot.svg, scale);
+    write_picture(context.folder / path, draw(plot, scale, context.folder / path));
   return {path, plot.title};
 }
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "nodes/media/ffmpeg.h"
-#include "nodes/media/ffmpeg/decoder.h"
+#include "nodes/codecs/codecs.h"
+#include "nodes/codecs/ffmpeg/decoder.h"
 
 namespace talkgraph {
 namespace {
@@ -107,16 +107,14 @@ void align(SoundTrack& track, double picture, const std::string& path) {
 }
 
 }  // namespace
+}  // namespace talkgraph
 
-Audio ffmpeg_audio(const std::string& path) {
+void codec_ffmpeg_audio(const std::string& path, talkgraph::Audio& audio) {
+  using namespace talkgraph;
   Decoder decoder(path, AVMEDIA_TYPE_AUDIO);
   SoundTrack track = decode(decoder, path);
   cut_end(track);
   align(track, picture_start(decoder.file(), track.start), path);
-  Audio audio;
   audio.samples = Eigen::Map<const Eigen::VectorXd>(track.samples.data(), std::ssize(track.samples));
   audio.rate = track.rate;
-  return audio;
 }
-
-}  // namespace talkgraph

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nodes/media/ffmpeg/handles.h"
+#include "nodes/codecs/ffmpeg/handles.h"
 
 namespace talkgraph {
 

@@ -1,4 +1,4 @@
-#include "nodes/media/ffmpeg/decoder.h"
+#include "nodes/codecs/ffmpeg/decoder.h"
 
 #include <fmt/format.h>
 

@@ -10,8 +10,8 @@ extern "C" {
 #include <stdexcept>
 
 #include "graph/key.h"
-#include "nodes/media/ffmpeg.h"
-#include "nodes/media/ffmpeg/decoder.h"
+#include "nodes/codecs/codecs.h"
+#include "nodes/codecs/ffmpeg/decoder.h"
 
 namespace talkgraph {
 namespace {
@@ -190,9 +190,8 @@ class FileVideo final : public VideoSource {
 };
 
 }  // namespace
-
-const bool built_with_ffmpeg = true;
-
-std::shared_ptr<const VideoSource> ffmpeg_video(const std::string& path) { return std::make_shared<FileVideo>(path); }
-
 }  // namespace talkgraph
+
+void codec_ffmpeg_video(const std::string& path, std::shared_ptr<const talkgraph::VideoSource>& video) {
+  video = std::make_shared<talkgraph::FileVideo>(path);
+}

@@ -8,8 +8,8 @@ extern "C" {
 #include <optional>
 #include <stdexcept>
 
-#include "nodes/media/ffmpeg.h"
-#include "nodes/media/ffmpeg/handles.h"
+#include "nodes/codecs/codecs.h"
+#include "nodes/codecs/ffmpeg/handles.h"
 
 namespace talkgraph {
 namespace {
@@ -221,9 +221,11 @@ OutputHandle open_output(const std::string& path, ClipFormat format, const Check
 }
 
 }  // namespace
+}  // namespace talkgraph
 
-void ffmpeg_encode(const std::string& path, const Video& video, const Audio* audio, const ClipSettings& settings,
-                   const Context& context) {
+void codec_ffmpeg_encode(const std::string& path, const talkgraph::Video& video, const talkgraph::Audio* audio,
+                         const talkgraph::ClipSettings& settings, const talkgraph::Context& context) {
+  using namespace talkgraph;
   av_log_set_level(AV_LOG_QUIET);
   const Check check(path);
   const OutputHandle file = open_output(path, settings.format, check);
@@ -252,5 +254,3 @@ void ffmpeg_encode(const std::string& path, const Video& video, const Audio* aud
   check(av_write_trailer(file.get()), "cannot be written to its end");
   check(avio_closep(&file->pb), "cannot be closed: is there room on the disk?");
 }
-
-}  // namespace talkgraph
