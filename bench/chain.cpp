@@ -98,11 +98,15 @@ void functor_calls() {
   for (int n = 0; n < nodes; ++n) chain.push_back(type.make(nullptr, {}, type.name, diagnostics));
   Context context;
   Random random;
+  std::vector<Input> inputs(1);
+  std::vector<Value> outputs;
   Order order;
   for (std::uint64_t i = 0; i < items; ++i) {
-    std::vector<Input> inputs(1);
     inputs[0].value = Value::of(Number{i});
-    for (const auto& functor : chain) inputs[0].value = std::move(functor->call(inputs, context, random)[0]);
+    for (const auto& functor : chain) {
+      functor->call(inputs, context, random, outputs);
+      inputs[0].value = std::move(outputs[0]);
+    }
     order.take(inputs[0].value.get<Number>().value);
   }
 }
@@ -184,7 +188,7 @@ std::string hundred_nodes() {
     add("mel", "speech.mel", "spectrum", branch("spectrum"), R"("filters": 26)");
     add("slow", "sync.polyphase", "track", branch("mel"), R"("rate": 25)");
     add("fast", "sync.polyphase", "track", branch("slow"), R"("rate": 100)");
-    add("write", "report.write_track", "track", branch("fast"), fmt::format("\"folder\": \"b{}\"", b).c_str());
+    add("write", "write.hdf5", "value", branch("fast"), "");
   }
   return text + "}}\n";
 }

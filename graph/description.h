@@ -80,7 +80,7 @@ struct Argument {
       return port_kind<T>(PortSpec::Kind::item);
     }
   }
-  /// Owns what the argument refers to while the operator runs.
+  /// What the argument refers to; the inputs outlive the call.
   static auto take(const Input& in) {
     if constexpr (is_collected<T>::value) {
       T all;
@@ -88,7 +88,7 @@ struct Argument {
         all.add(item.key, item.value.template share<typename is_collected<T>::Element>());
       return all;
     } else {
-      return in.value.template share<T>();
+      return &in.value.template get<T>();
     }
   }
   template <class Held>
@@ -105,16 +105,16 @@ struct Argument<const T*> {
   static_assert(Port<T>, "specialise port_type for the type of this input");
   static constexpr bool is_port = true;
   static constexpr PortKind port() { return port_kind<T>(PortSpec::Kind::optional); }
-  static std::shared_ptr<const T> take(const Input& in) { return in.value ? in.value.share<T>() : nullptr; }
-  static const T* give(const std::shared_ptr<const T>& held) { return held.get(); }
+  static const T* take(const Input& in) { return in.value ? &in.value.get<T>() : nullptr; }
+  static const T* give(const T* held) { return held; }
 };
 
 template <>
 struct Argument<const Value&> {
   static constexpr bool is_port = true;
   static constexpr PortKind port() { return {any_type}; }
-  static Value take(const Input& in) { return in.value; }
-  static const Value& give(const Value& held) { return held; }
+  static const Value* take(const Input& in) { return &in.value; }
+  static const Value& give(const Value* held) { return *held; }
 };
 
 template <>
@@ -268,13 +268,12 @@ class Description {
     Bound(N node, std::vector<Getter> getters, std::shared_ptr<const std::vector<ParameterSpec>> specs)
         : node_(std::move(node)), getters_(std::move(getters)), specs_(std::move(specs)) {}
 
-    std::vector<Value> call(std::span<const Input> inputs, Context& context, Random& random) const override {
-      if constexpr (makes_stream) {
+    void call(std::span<const Input> inputs, Context& context, Random& random,
+              std::vector<Value>& outputs) const override {
+      if constexpr (makes_stream)
         throw std::logic_error("a stream source is not called");
-      } else {
-        auto result = detail::invoke(node_, static_cast<Arguments*>(nullptr), inputs, context, random);
-        return values(std::move(result));
-      }
+      else
+        put(detail::invoke(node_, static_cast<Arguments*>(nullptr), inputs, context, random), outputs);
     }
     AnyStream stream(std::span<const Input> inputs, Context& context, Random& random) const override {
       if constexpr (makes_stream) {
@@ -287,7 +286,9 @@ class Description {
             [this, result, held]() -> std::optional<Item<std::vector<Value>>> {
               auto item = result->next();
               if (!item) return {};
-              return Item<std::vector<Value>>{std::move(item->key), values(std::move(item->value))};
+              Item<std::vector<Value>> made{std::move(item->key), {}};
+              put(std::move(item->value), made.value);
+              return made;
             },
             size);
       } else {
@@ -298,14 +299,13 @@ class Description {
 
    private:
     template <class T>
-    std::vector<Value> values(T result) const {
-      std::vector<Value> out(getters_.size());
+    void put(T result, std::vector<Value>& outputs) const {
+      outputs.assign(getters_.size(), {});
       if constexpr (std::is_same_v<T, Produced>) {
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = getters_[i](result);
+        for (std::size_t i = 0; i < outputs.size(); ++i) outputs[i] = getters_[i](result);
       } else if (result) {
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = getters_[i](*result);
+        for (std::size_t i = 0; i < outputs.size(); ++i) outputs[i] = getters_[i](*result);
       }
-      return out;
     }
 
     N node_;

@@ -433,7 +433,7 @@ class Loader {
 /// Stands for the inputs of a graph that is looked at, not run.
 class UnboundInputs final : public Functor {
  public:
-  std::vector<Value> call(std::span<const Input>, Context&, Random&) const override { fail(); }
+  void call(std::span<const Input>, Context&, Random&, std::vector<Value>&) const override { fail(); }
   AnyStream stream(std::span<const Input>, Context&, Random&) const override { fail(); }
   Json parameters() const override { return Json::object(); }
 

@@ -29,8 +29,9 @@ using AnyStream = Stream<std::vector<Value>>;
 class Functor {
  public:
   virtual ~Functor() = default;
-  /// One value an output port, empty where the node drops the item. Not for sources.
-  virtual std::vector<Value> call(std::span<const Input> inputs, Context& context, Random& random) const = 0;
+  /// Fills `outputs` with one value an output port, empty where the node drops the item. Not for sources.
+  virtual void call(std::span<const Input> inputs, Context& context, Random& random,
+                    std::vector<Value>& outputs) const = 0;
   /// Only for types with `makes_stream`.
   virtual AnyStream stream(std::span<const Input> inputs, Context& context, Random& random) const = 0;
   virtual Json parameters() const = 0;

@@ -62,17 +62,23 @@ class Value {
 
   template <Port T>
   std::shared_ptr<const T> share() const {
-    if (!data_ || type_->type != port_type<T>)
-      throw std::logic_error("a value of type " + std::string(data_ ? type_->type.name : "nothing") + " is not a " +
-                             std::string(port_type<T>.name));
+    check<T>();
     return std::static_pointer_cast<const T>(data_);
   }
   template <Port T>
   const T& get() const {
-    return *share<T>();
+    check<T>();
+    return *static_cast<const T*>(data_.get());
   }
 
  private:
+  template <Port T>
+  void check() const {
+    if (data_ && (type_ == &type_info<T>() || type_->type == port_type<T>)) return;
+    throw std::logic_error("a value of type " + std::string(data_ ? type_->type.name : "nothing") + " is not a " +
+                           std::string(port_type<T>.name));
+  }
+
   std::shared_ptr<const void> data_;
   const TypeInfo* type_ = nullptr;
 };

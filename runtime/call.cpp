@@ -99,12 +99,11 @@ class Caller::Watch {
   Watch& operator=(const Watch&) = delete;
 
  private:
-  /// How many calls the next one stands for.
+  /// How many calls the next one stands for. Judged by processor time: a thread may have had to wait for its turn.
   static double weight(const NodeStats& books) {
-    constexpr std::uint64_t one_of = 32;
-    constexpr double cheap = 1e-5;  // seconds of processor time: a thread may have had to wait for its turn
-    if (books.calls < one_of || books.cpu > cheap * static_cast<double>(books.calls)) return 1e-9;
-    return books.calls % one_of == 0 ? 1e-9 * one_of : 0;
+    const auto calls = static_cast<double>(books.calls);
+    const std::uint64_t one_of = books.calls < 32 || books.cpu > 1e-5 * calls ? 1 : books.cpu > 1e-6 * calls ? 32 : 256;
+    return books.calls % one_of == 0 ? 1e-9 * static_cast<double>(one_of) : 0;
   }
 
   const Caller& caller_;
@@ -207,32 +206,44 @@ void Caller::failed(Station& station, const std::string& item, std::string cause
   for (auto* o : options_.observers) o->failed(failure);
 }
 
-std::vector<Value> Caller::call(Station& station, const std::string& item) {
+std::vector<Value>& Caller::call(Station& station, const std::string& item) {
   check_stopped();
   const int n = station.node;
   station.context.item = item;
-  std::vector<Value> outputs;
-  switch (keeper_ ? keeper_->forecast().need(n, item) : Need::call) {
+  station.outputs.clear();
+  if (keeper_)
+    load_or_compute(station, *keeper_);
+  else
+    compute(station);
+  for (const auto p : station.item_ports) station.inputs[p].value = {};
+  station.outputs.resize(node(n).type->outputs.size());
+  sent(station, station.outputs);
+  for (auto* o : options_.observers) o->item_done(n, item);
+  return station.outputs;
+}
+
+void Caller::load_or_compute(Station& station, Keeper& keeper) {
+  const int n = station.node;
+  const auto& item = station.context.item;
+  switch (keeper.forecast().need(n, item)) {
     case Need::skip:
       station.books.unneeded += 1;
       break;
     case Need::load:
-      outputs = load(station);
+      load(station);
       break;
     case Need::call: {
-      const auto claim = keeper_ ? keeper_->claim(n, item) : Cache::Claim();
-      outputs = keeper_ && keeper_->made_meanwhile(n, item) ? load(station) : compute(station);
+      const auto claim = keeper.claim(n, item);
+      if (keeper.made_meanwhile(n, item))
+        load(station);
+      else
+        compute(station);
       break;
     }
   }
-  for (const auto p : station.item_ports) station.inputs[p].value = {};
-  outputs.resize(node(n).type->outputs.size());
-  sent(station, outputs);
-  for (auto* o : options_.observers) o->item_done(n, item);
-  return outputs;
 }
 
-std::vector<Value> Caller::load(Station& station) {
+void Caller::load(Station& station) {
   const Watch watch(*this, station);
   const int n = station.node;
   const auto& item = station.context.item;
@@ -242,45 +253,50 @@ std::vector<Value> Caller::load(Station& station) {
   station.books.saved += result.seconds;
   for (const auto& warning : result.warnings)
     for (auto* o : options_.observers) o->warn(n, item, warning);
-  return std::move(result.outputs);
+  station.outputs = std::move(result.outputs);
 }
 
-std::vector<Value> Caller::compute(Station& station) {
+void Caller::compute(Station& station) {
   const int n = station.node;
   const auto& type = *node(n).type;
-  const auto& item = station.context.item;
-  const bool kept = keeper_ && keeper_->keeps(n);
-  Cache::Result result;
-  std::optional<Desk> desk;
   if (!complete(type, station.inputs)) {
     station.books.skipped += 1;
-  } else {
-    const Watch watch(*this, station);
-    station.books.calls += 1;
-    const auto start = kept ? nanoseconds(CLOCK_MONOTONIC) : 0;
-    try {
-      std::optional<Context> of_kept;
-      if (kept) {
-        of_kept = station.context;
-        of_kept->on_warning = [&](std::string_view message) {
-          result.warnings.emplace_back(message);
-          station.context.warn(message);
-        };
-        if (type.sink) of_kept->folder = desk.emplace(keeper_->desk()).path;
-      }
-      Random random = type.uses_random ? Random(graph_.seed, type.name, item) : Random();
-      result.outputs = node(n).functor->call(station.inputs, kept ? *of_kept : station.context, random);
-      if (desk) keeper_->deliver(desk->path);
-    } catch (const Cancelled&) {
-      throw;
-    } catch (...) {
-      failed(station, item, cause_of(std::current_exception()) + (type.sink ? disk_note(options_.folder) : ""));
-      return {};
-    }
-    if (kept) result.seconds = 1e-9 * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - start);
+    return;
   }
-  if (kept && !tainted(n, item)) keeper_->keep(n, item, result, desk ? desk->path : std::filesystem::path());
-  return std::move(result.outputs);
+  if (type.uses_random) station.random = Random(graph_.seed, type.name, station.context.item);
+  const Watch watch(*this, station);
+  station.books.calls += 1;
+  try {
+    if (keeper_ && keeper_->keeps(n))
+      call_and_keep(station);
+    else
+      node(n).functor->call(station.inputs, station.context, station.random, station.outputs);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (...) {
+    station.outputs.clear();
+    failed(station, station.context.item,
+           cause_of(std::current_exception()) + (type.sink ? disk_note(options_.folder) : ""));
+  }
+}
+
+void Caller::call_and_keep(Station& station) {
+  const int n = station.node;
+  const auto& item = station.context.item;
+  Cache::Result result;
+  std::optional<Desk> desk;
+  Context context = station.context;
+  context.on_warning = [&](std::string_view message) {
+    result.warnings.emplace_back(message);
+    station.context.warn(message);
+  };
+  if (node(n).type->sink) context.folder = desk.emplace(keeper_->desk()).path;
+  const auto start = nanoseconds(CLOCK_MONOTONIC);
+  node(n).functor->call(station.inputs, context, station.random, station.outputs);
+  if (desk) keeper_->deliver(desk->path);
+  result.seconds = 1e-9 * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - start);
+  result.outputs = station.outputs;
+  if (!tainted(n, item)) keeper_->keep(n, item, result, desk ? desk->path : std::filesystem::path());
 }
 
 bool Caller::tainted(int n, const std::string& item) const {
@@ -325,10 +341,11 @@ std::vector<Failure> Caller::failures() const {
   return all;
 }
 
-OpenSource::OpenSource(Caller& caller, int node, std::vector<Input> inputs)
+OpenSource::OpenSource(Caller& caller, int node, std::vector<Input> inputs, Keys& keys)
     : caller_(caller),
       station_(caller.station(node, std::move(inputs))),
-      random_(caller.graph_.seed, caller.node(node).type->name, "") {
+      random_(caller.graph_.seed, caller.node(node).type->name, ""),
+      keys_(keys) {
   caller_.check_stopped();
   if (caller_.keeper_ && caller_.keeper_->forecast().need(node, "") == Need::skip) return;
   if (!Caller::complete(*caller_.node(node).type, station_.inputs)) {
@@ -359,15 +376,15 @@ std::optional<Item<std::vector<Value>>> OpenSource::pull() {
       // The key of the item that failed is not known, that of the one before is.
       const auto cause = cause_of(std::current_exception());
       caller_.failed(station_, "",
-                     last_.empty() ? fmt::format("the first item: {}", cause)
-                                   : fmt::format("the item after \"{}\": {}", last_, cause));
+                     keys_.empty() ? fmt::format("the first item: {}", cause)
+                                   : fmt::format("the item after \"{}\": {}", keys_.back(), cause));
       // A source of unknown length might fail for ever.
       if (pulled_ >= stream_->size().value_or(0)) return {};
     }
   }
 }
 
-std::optional<Item<std::vector<Value>>> OpenSource::next() {
+std::optional<std::vector<Value>> OpenSource::next() {
   while (stream_) {
     caller_.check_stopped();
     auto item = pull();
@@ -375,8 +392,7 @@ std::optional<Item<std::vector<Value>>> OpenSource::next() {
       stream_.reset();
       break;
     }
-    last_ = item->key;
-    if (!keys_.insert(item->key).second) {
+    if (!keys_.add(item->key)) {
       caller_.failed(station_, item->key, "this key came before: the keys of a source must be unique");
       continue;
     }
@@ -386,7 +402,7 @@ std::optional<Item<std::vector<Value>>> OpenSource::next() {
     if (caller_.keeper_) caller_.keeper_->forecast().enter(node, item->key, item->value);
     Caller::sent(station_, item->value);
     for (auto* o : caller_.options_.observers) o->item_done(node, item->key);
-    return item;
+    return std::move(item->value);
   }
   return {};
 }

@@ -6,11 +6,11 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <unordered_set>
 #include <vector>
 
 #include "runtime/executor.h"
 #include "runtime/keeper.h"
+#include "runtime/keys.h"
 
 namespace talkgraph {
 
@@ -26,7 +26,9 @@ struct Station {
   int node = 0;
   std::vector<Input> inputs;            ///< those that are the same in every call, and while one runs, the item's
   std::vector<std::size_t> item_ports;  ///< inputs that change with the item
+  std::vector<Value> outputs;           ///< of the last call
   Context context;
+  Random random;
   NodeStats books;
 
   /// Puts in what the item at hand has for an input.
@@ -53,10 +55,10 @@ class Caller {
   /// A new station, with those inputs; it stays as long as the caller.
   Station& station(int node, std::vector<Input> fixed_inputs);
 
-  /// One value an output port; empty ones if nobody wants them, if a required input has nothing, if
-  /// the node drops the item, or if it failed and the run keeps going. The item's inputs are given
-  /// before and gone behind it. Throws RunError, Cancelled or Cache::Damaged.
-  std::vector<Value> call(Station& station, const std::string& item);
+  /// Gives one value an output port, in the station, for the executor to take; empty ones if nobody wants them, if a
+  /// required input has nothing, if the node drops the item, or if it failed and the run keeps going. The item's inputs
+  /// are given before and gone behind it. Throws RunError, Cancelled or Cache::Damaged.
+  std::vector<Value>& call(Station& station, const std::string& item);
 
   /// Makes running nodes give up; later calls throw Cancelled.
   void stop() { stop_ = true; }
@@ -75,8 +77,10 @@ class Caller {
   const Graph::Node& node(int n) const { return graph_.nodes[static_cast<std::size_t>(n)]; }
   static bool complete(const NodeType& type, const std::vector<Input>& inputs);
   static void sent(Station& station, const std::vector<Value>& outputs);
-  std::vector<Value> load(Station& station);
-  std::vector<Value> compute(Station& station);
+  void load_or_compute(Station& station, Keeper& keeper);
+  void load(Station& station);
+  void compute(Station& station);
+  void call_and_keep(Station& station);
   /// Whether a failed item may have had a hand in what a node makes of an item.
   bool tainted(int node, const std::string& item) const;
   /// Books a failure; throws RunError unless the run keeps going.
@@ -99,10 +103,10 @@ class Caller {
 /// A source at work: its stream with what the stream refers to.
 class OpenSource {
  public:
-  /// Opens the stream; it is empty if a required input has nothing.
-  OpenSource(Caller& caller, int node, std::vector<Input> inputs);
-  /// The next item. Throws as Caller::call does, also on a key that came before.
-  std::optional<Item<std::vector<Value>>> next();
+  /// Opens the stream; it is empty if a required input has nothing. Keys of the items made are added to `keys`.
+  OpenSource(Caller& caller, int node, std::vector<Input> inputs, Keys& keys);
+  /// The next item, one value an output port. Throws as Caller::call does, also on a key that came before.
+  std::optional<std::vector<Value>> next();
 
  private:
   std::optional<Item<std::vector<Value>>> pull();
@@ -111,8 +115,7 @@ class OpenSource {
   Station& station_;
   Random random_;
   std::optional<AnyStream> stream_;
-  std::unordered_set<std::string> keys_;
-  std::string last_;
+  Keys& keys_;
   std::size_t pulled_ = 0;
 };
 

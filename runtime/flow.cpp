@@ -1,6 +1,7 @@
 #include <oneapi/tbb/flow_graph.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
+#include <oneapi/tbb/spin_mutex.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <deque>
 #include <exception>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -47,7 +47,7 @@ struct Flight {
 
 /// The items of a source, and what is held of them when a sweep is over: collecting in order is a walk over the items.
 struct Domain {
-  std::deque<std::string> keys;          // grows at the end, addresses stay
+  Keys keys;
   std::vector<std::vector<Value>> held;  // [slot][item]
 };
 
@@ -83,7 +83,7 @@ struct Sweep {
   std::optional<OpenSource> source;  // of the sweep that opens its domain
   std::size_t next = 0;              // item, of a later sweep
   int out = 0;                       // flights that may still bring an item
-  std::mutex door;                   // of what follows
+  tbb::spin_mutex door;              // of what follows; never held for long
   std::atomic<bool> drawing{false};
   std::vector<Flight*> waiting;  // for the one that draws to leave
   std::deque<Flight> flights;
@@ -284,10 +284,11 @@ class FlowRun {
     guarded([&] {
       const int n = plan_.units[u].nodes[0];
       auto& station = caller_.station(n, fixed_inputs(n));
-      auto values = caller_.call(station, "");
+      auto& values = caller_.call(station, "");
       station.inputs.clear();
       for (std::size_t p = 0; p < values.size(); ++p)
         if (shelves_[at(n)][p].units > 0) shelves_[at(n)][p].single = std::move(values[p]);
+      values.clear();
       finish(u);
     });
   }
@@ -297,12 +298,14 @@ class FlowRun {
       const auto& unit = plan_.units[u];
       auto& sweep = sweeps_[u];
       for (int i = 0; i < in_flight_; ++i) sweep.flights.emplace_back(sweep.readers.size(), unit.runs.size());
+      std::vector<std::pair<int, std::vector<Input>>> nodes;
       for (const auto& run : unit.runs)
-        for (const int n : run.nodes) {
-          const auto fixed = fixed_inputs(n);
-          for (auto& flight : sweep.flights) flight.stations.push_back(&caller_.station(n, fixed));
-        }
-      if (unit.opens) sweep.source.emplace(caller_, unit.domain, fixed_inputs(unit.domain));
+        for (const int n : run.nodes) nodes.emplace_back(n, fixed_inputs(n));
+      // What one flight uses lies together: threads would else write to the same cache lines.
+      for (auto& flight : sweep.flights)
+        for (const auto& [n, fixed] : nodes) flight.stations.push_back(&caller_.station(n, fixed));
+      if (unit.opens)
+        sweep.source.emplace(caller_, unit.domain, fixed_inputs(unit.domain), domains_[at(unit.domain)].keys);
       sweep.out = in_flight_;
       for (auto& flight : sweep.flights) sweep.pump->try_put(&flight);
     });
@@ -330,7 +333,7 @@ class FlowRun {
   static bool enter(Sweep& sweep, Flight& flight) {
     for (int i = 0; i < 1000 && sweep.drawing.load(std::memory_order_relaxed); ++i) {
     }
-    const std::lock_guard lock(sweep.door);
+    const tbb::spin_mutex::scoped_lock lock(sweep.door);
     if (!sweep.drawing.exchange(true)) return true;
     sweep.waiting.push_back(&flight);
     return false;
@@ -338,7 +341,7 @@ class FlowRun {
   static void leave(Sweep& sweep) {
     std::vector<Flight*> waiting;
     {
-      const std::lock_guard lock(sweep.door);
+      const tbb::spin_mutex::scoped_lock lock(sweep.door);
       sweep.drawing = false;
       waiting.swap(sweep.waiting);
     }
@@ -380,11 +383,10 @@ class FlowRun {
         caller_.domain_size(unit.domain, domain.keys.size());
         return false;
       }
-      flight.index = domain.keys.size();
-      domain.keys.push_back(std::move(made->key));
-      for (std::size_t p = 0; p < made->value.size(); ++p)
+      flight.index = domain.keys.size() - 1;
+      for (std::size_t p = 0; p < made->size(); ++p)
         if (const int slot = shelves_[at(unit.domain)][p].slot; slot >= 0)
-          flight.values[at(slot)] = std::move(made->value[p]);
+          flight.values[at(slot)] = std::move((*made)[p]);
     }
     flight.key = &domain.keys[flight.index];
     for (std::size_t s = 0; s < sweep.readers.size(); ++s)
@@ -417,9 +419,10 @@ class FlowRun {
   void do_step(const Step& step, Flight& flight) {
     auto& station = *flight.stations[step.station];
     for (const auto& [port, slot] : step.takes) station.give(port, take(flight, slot));
-    auto values = caller_.call(station, *flight.key);
+    auto& values = caller_.call(station, *flight.key);
     for (std::size_t p = 0; p < values.size(); ++p)
       if (step.puts[p] >= 0) flight.values[at(step.puts[p])] = std::move(values[p]);
+    values.clear();
   }
 
   /// The last reader takes the value itself, which costs less than a copy.

@@ -12,8 +12,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::vector<RunResult::Output> run_serial(const Graph& graph, Caller& caller) {
   const std::size_t count = graph.nodes.size();
-  std::vector<std::vector<Row>> rows(count);          // of each node, one an item
-  std::vector<std::vector<std::string>> keys(count);  // of each source
+  std::vector<std::vector<Row>> rows(count);  // of each node, one an item
+  std::vector<Keys> keys(count);              // of each source
   std::vector<std::size_t> last_reader(count);
   for (std::size_t n = 0; n < count; ++n)
     for_each_source(graph, static_cast<int>(n),
@@ -35,14 +35,11 @@ std::vector<RunResult::Output> run_serial(const Graph& graph, Caller& caller) {
     const int self = static_cast<int>(n);
     auto fixed = caller.fixed_inputs(self, single, gathered);
     if (node.type->makes_stream) {
-      OpenSource source(caller, self, std::move(fixed));
-      while (auto item = source.next()) {
-        keys[n].push_back(std::move(item->key));
-        rows[n].push_back(std::move(item->value));
-      }
+      OpenSource source(caller, self, std::move(fixed), keys[n]);
+      while (auto values = source.next()) rows[n].push_back(std::move(*values));
       caller.domain_size(self, keys[n].size());
     } else if (node.domain < 0) {
-      rows[n].push_back(caller.call(caller.station(self, std::move(fixed)), ""));
+      rows[n].push_back(std::move(caller.call(caller.station(self, std::move(fixed)), "")));
     } else {
       auto& station = caller.station(self, std::move(fixed));
       const auto& names = keys[at(node.domain)];
@@ -51,7 +48,7 @@ std::vector<RunResult::Output> run_serial(const Graph& graph, Caller& caller) {
         for_each_source(graph, self, [&](std::size_t input, Graph::Port source, Way w) {
           if (w == Way::item) station.give(input, rows[at(source.node)][i][at(source.port)]);
         });
-        rows[n].push_back(caller.call(station, names[i]));
+        rows[n].push_back(std::move(caller.call(station, names[i])));
       }
       station.inputs.clear();
     }

@@ -104,6 +104,13 @@ void describe(Description<MakeImpostor>& d) {
   d.type("test.impostor").summary("gives another type of the same name").input("number").output("number");
 }
 
+std::vector<Value> call(const Functor& functor, std::span<const Input> inputs, Context& context) {
+  std::vector<Value> outputs;
+  Random random;
+  functor.call(inputs, context, random, outputs);
+  return outputs;
+}
+
 TEST(Description, APortTypeIsOneCppType) {
   Registry r;
   r.add<Note>();
@@ -121,9 +128,8 @@ TEST(Description, GivesAnyValueAndHowItCameAbout) {
   const auto node = type.make(nullptr, {}, "node", diagnostics);
   Context context;
   context.provenance.node = "four";
-  Random random(1, "", "");
   const std::vector<Input> inputs = {{Value::of(Number{1}), {}}};
-  EXPECT_EQ(node->call(inputs, context, random).at(0).get<Number>().x, 6 + 4);
+  EXPECT_EQ(call(*node, inputs, context).at(0).get<Number>().x, 6 + 4);
 }
 
 TEST(Description, CallsAFunctorWithItsParameters) {
@@ -137,9 +143,8 @@ TEST(Description, CallsAFunctorWithItsParameters) {
   const auto functor = type->make(&params, {}, "node \"s\"", d);
   ASSERT_TRUE(d.ok()) << d.str();
   Context context;
-  Random random;
   const Input in{Value::of(Number{5}), {}};
-  EXPECT_EQ(functor->call({&in, 1}, context, random).at(0).get<Number>().x, -15);
+  EXPECT_EQ(call(*functor, {&in, 1}, context).at(0).get<Number>().x, -15);
   EXPECT_EQ(functor->parameters().dump(), R"({"factor":3.0,"sign":"minus"})");
 }
 
@@ -172,8 +177,7 @@ TEST(Description, CollectsOptionalsAndSeveralOutputs) {
   std::vector<Input> in(2);
   in[0].collected = {{"a", Value::of(Number{1})}, {"b", Value::of(Number{3})}};
   Context context;
-  Random random;
-  const auto out = functor->call(in, context, random);
+  const auto out = call(*functor, in, context);
   EXPECT_EQ(out.at(0).get<Number>().x, 4);
   EXPECT_FALSE(out.at(1));
 }

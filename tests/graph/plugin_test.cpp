@@ -39,7 +39,9 @@ TEST(Plugin, BringsNodesThatTakeAndGiveValuesOfTheProgram) {
   Random random;
   const auto call = [&](double x) {
     const std::vector<Input> in{{Value::of(Number{x}), {}}};
-    return functor->call(in, context, random).at(0);
+    std::vector<Value> outputs;
+    functor->call(in, context, random, outputs);
+    return outputs.at(0);
   };
   const Value half = call(3);
   EXPECT_EQ(half.get<Number>().x, 1.5);
