@@ -234,7 +234,7 @@ class Description {
   Description& output(std::string name, std::string doc = "") {
     static_assert(Port<Produced>, "name the members of a returned struct: output(\"name\", &Out::member)");
     return add_output(std::move(name), std::move(doc), type_info<Produced>(), typeid(Produced), drops_items,
-                      [](Produced& all) { return Value::of(std::move(all)); });
+                      [](Produced& all, Value& to) { to = Value::of(std::move(all)); });
   }
   /// Names one member of the returned struct as an output.
   template <class M>
@@ -242,7 +242,7 @@ class Description {
     using T = typename detail::unwrap_optional<M>::type;
     static_assert(Port<T>, "specialise port_type for the type of this output");
     return add_output(std::move(name), std::move(doc), type_info<T>(), typeid(T), drops_items || !std::is_same_v<T, M>,
-                      [member](Produced& all) { return detail::to_value(std::move(all.*member)); });
+                      [member](Produced& all, Value& to) { to = detail::to_value(std::move(all.*member)); });
   }
   template <class M>
   ParameterHandle param(std::string name, M N::*member) {
@@ -253,7 +253,7 @@ class Description {
   NodeType finish() &&;
 
  private:
-  using Getter = std::function<Value(Produced&)>;
+  using Getter = std::function<void(Produced&, Value&)>;
 
   Description& add_output(std::string name, std::string doc, const TypeInfo& info, const std::type_info& cpp,
                           bool may_drop, Getter get) {
@@ -300,11 +300,12 @@ class Description {
    private:
     template <class T>
     void put(T result, std::vector<Value>& outputs) const {
-      outputs.assign(getters_.size(), {});
+      outputs.clear();
+      outputs.resize(getters_.size());
       if constexpr (std::is_same_v<T, Produced>) {
-        for (std::size_t i = 0; i < outputs.size(); ++i) outputs[i] = getters_[i](result);
+        for (std::size_t i = 0; i < outputs.size(); ++i) getters_[i](result, outputs[i]);
       } else if (result) {
-        for (std::size_t i = 0; i < outputs.size(); ++i) outputs[i] = getters_[i](*result);
+        for (std::size_t i = 0; i < outputs.size(); ++i) getters_[i](*result, outputs[i]);
       }
     }
 

@@ -103,7 +103,7 @@ class Caller::Watch {
   static double weight(const NodeStats& books) {
     const auto calls = static_cast<double>(books.calls);
     const std::uint64_t one_of = books.calls < 32 || books.cpu > 1e-5 * calls ? 1 : books.cpu > 1e-6 * calls ? 32 : 256;
-    return books.calls % one_of == 0 ? 1e-9 * static_cast<double>(one_of) : 0;
+    return (books.calls & (one_of - 1)) == 0 ? 1e-9 * static_cast<double>(one_of) : 0;
   }
 
   const Caller& caller_;
@@ -160,10 +160,14 @@ Station& Caller::station(int n, std::vector<Input> fixed_inputs) {
   const std::lock_guard lock(mutex_);
   auto& station = stations_.emplace_back();
   station.node = n;
+  station.functor = node(n).functor.get();
   station.inputs = std::move(fixed_inputs);
   for_each_source(graph_, n, [&](std::size_t p, Graph::Port, Way w) {
     if (w == Way::item) station.item_ports.push_back(p);
   });
+  const auto& ports = node(n).type->inputs;
+  for (std::size_t p = 0; p < ports.size(); ++p)
+    if (ports[p].kind == PortSpec::Kind::item) station.required.push_back(p);
   station.books = empty_books(node(n));
   auto& context = station.context;
   context.folder = options_.folder;
@@ -180,12 +184,6 @@ Station& Caller::station(int n, std::vector<Input> fixed_inputs) {
     for (auto* o : options_.observers) o->warn(s->node, s->context.item, message);
   };
   return station;
-}
-
-bool Caller::complete(const NodeType& type, const std::vector<Input>& inputs) {
-  for (std::size_t p = 0; p < inputs.size(); ++p)
-    if (type.inputs[p].kind == PortSpec::Kind::item && !inputs[p].value) return false;
-  return true;
 }
 
 void Caller::sent(Station& station, const std::vector<Value>& outputs) {
@@ -259,7 +257,7 @@ void Caller::load(Station& station) {
 void Caller::compute(Station& station) {
   const int n = station.node;
   const auto& type = *node(n).type;
-  if (!complete(type, station.inputs)) {
+  if (!station.complete()) {
     station.books.skipped += 1;
     return;
   }
@@ -270,7 +268,7 @@ void Caller::compute(Station& station) {
     if (keeper_ && keeper_->keeps(n))
       call_and_keep(station);
     else
-      node(n).functor->call(station.inputs, station.context, station.random, station.outputs);
+      station.functor->call(station.inputs, station.context, station.random, station.outputs);
   } catch (const Cancelled&) {
     throw;
   } catch (...) {
@@ -292,7 +290,7 @@ void Caller::call_and_keep(Station& station) {
   };
   if (node(n).type->sink) context.folder = desk.emplace(keeper_->desk()).path;
   const auto start = nanoseconds(CLOCK_MONOTONIC);
-  node(n).functor->call(station.inputs, context, station.random, station.outputs);
+  station.functor->call(station.inputs, context, station.random, station.outputs);
   if (desk) keeper_->deliver(desk->path);
   result.seconds = 1e-9 * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - start);
   result.outputs = station.outputs;
@@ -348,7 +346,7 @@ OpenSource::OpenSource(Caller& caller, int node, std::vector<Input> inputs, Keys
       keys_(keys) {
   caller_.check_stopped();
   if (caller_.keeper_ && caller_.keeper_->forecast().need(node, "") == Need::skip) return;
-  if (!Caller::complete(*caller_.node(node).type, station_.inputs)) {
+  if (!station_.complete()) {
     station_.books.skipped += 1;
     return;
   }

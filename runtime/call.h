@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <functional>
@@ -24,8 +25,10 @@ struct Gathered {
 /// as it works on items at once, so that none of this is shared between threads.
 struct Station {
   int node = 0;
+  const Functor* functor = nullptr;
   std::vector<Input> inputs;            ///< those that are the same in every call, and while one runs, the item's
   std::vector<std::size_t> item_ports;  ///< inputs that change with the item
+  std::vector<std::size_t> required;    ///< inputs without which the node is not called
   std::vector<Value> outputs;           ///< of the last call
   Context context;
   Random random;
@@ -35,6 +38,9 @@ struct Station {
   void give(std::size_t port, Value value) {
     count(books.in[port], value);
     inputs[port].value = std::move(value);
+  }
+  bool complete() const {
+    return std::all_of(required.begin(), required.end(), [&](std::size_t p) { return bool(inputs[p].value); });
   }
   static void count(PortCount& port, const Value& value) {
     port.items += 1;
@@ -75,7 +81,6 @@ class Caller {
   struct Desk;
 
   const Graph::Node& node(int n) const { return graph_.nodes[static_cast<std::size_t>(n)]; }
-  static bool complete(const NodeType& type, const std::vector<Input>& inputs);
   static void sent(Station& station, const std::vector<Value>& outputs);
   void load_or_compute(Station& station, Keeper& keeper);
   void load(Station& station);

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <tsl/robin_set.h>
-
 #include <cstddef>
-#include <cstdint>
 #include <deque>
-#include <memory>
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <unordered_set>
+#include <utility>
 
 namespace talkgraph {
 
@@ -20,8 +19,11 @@ class Keys {
 
   /// False if the key came before.
   bool add(std::string key) {
+    const bool rises = list_.empty() || less(list_.back(), key);
     list_.push_back(std::move(key));
-    if (seen_.insert(static_cast<std::uint32_t>(list_.size() - 1)).second) return true;
+    if (rising_ && rises) return true;
+    if (std::exchange(rising_, false)) seen_.insert(list_.begin(), std::prev(list_.end()));
+    if (seen_.insert(list_.back()).second) return true;
     list_.pop_back();
     return false;
   }
@@ -33,20 +35,14 @@ class Keys {
   const std::string& back() const { return list_.back(); }
 
  private:
-  // The set holds places in the list and hashes, which is less memory to go through than texts.
-  struct Hash {
-    const std::deque<std::string>* list;
-    std::size_t operator()(std::uint32_t i) const { return std::hash<std::string>()((*list)[i]); }
-  };
-  struct Equal {
-    const std::deque<std::string>* list;
-    bool operator()(std::uint32_t a, std::uint32_t b) const { return (*list)[a] == (*list)[b]; }
-  };
-  static constexpr bool store_hash = true;
+  /// The order of numbers and of names of one length: sorted keys, which are the most common, need no set.
+  static bool less(const std::string& a, const std::string& b) {
+    return a.size() != b.size() ? a.size() < b.size() : a < b;
+  }
 
   std::deque<std::string> list_;
-  tsl::robin_set<std::uint32_t, Hash, Equal, std::allocator<std::uint32_t>, store_hash> seen_{0, Hash{&list_},
-                                                                                              Equal{&list_}};
+  bool rising_ = true;
+  std::unordered_set<std::string_view> seen_;  // once keys do not rise
 };
 
 }  // namespace talkgraph

@@ -2,8 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace talkgraph {
 namespace {
+
+TEST(Keys, MayComeInAnyOrder) {
+  Keys keys;
+  for (const char* key : {"b", "c", "aa", "a", "bb", "ab"}) EXPECT_TRUE(keys.add(key)) << key;
+  for (const char* key : {"c", "b", "ab", "a", "aa", "bb"}) EXPECT_FALSE(keys.add(key)) << key;
+  EXPECT_TRUE(keys.add("d"));
+  EXPECT_EQ(keys.size(), 7u);
+}
 
 TEST(Keys, AreKeptInOrderEachOnce) {
   Keys keys;
