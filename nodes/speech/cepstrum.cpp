@@ -4,6 +4,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "nodes/speech/lp_cepstrum.h"
+
 namespace talkgraph {
 
 Track Cepstrum::operator()(const Track& track) const {
@@ -13,11 +15,11 @@ Track Cepstrum::operator()(const Track& track) const {
                                 " coefficients needs as many filters, got " + std::to_string(filters));
   const int first = keep_zeroth ? 0 : 1;
   Eigen::MatrixXd dct(filters, coefficients - first);
-  const double pi = std::numbers::pi, m = static_cast<double>(filters);
+  const double m = static_cast<double>(filters);
   for (int i = first; i < coefficients; ++i) {
-    const double lift = lifter > 0 ? 1 + lifter / 2 * std::sin(pi * i / lifter) : 1;
+    const double weight = lifter_weight(i, lifter) * std::sqrt((i == 0 && orthonormal ? 1 : 2) / m);
     for (Eigen::Index j = 0; j < filters; ++j)
-      dct(j, i - first) = lift * std::sqrt(2 / m) * std::cos(pi * i * (static_cast<double>(j) + 0.5) / m);
+      dct(j, i - first) = weight * std::cos(std::numbers::pi * i * (static_cast<double>(j) + 0.5) / m);
   }
   Track out;
   out.rate = track.rate;
@@ -32,7 +34,11 @@ void describe(Description<Cepstrum>& d) {
   d.input("track", "log filter outputs").output("track", "T x coefficients");
   d.param("coefficients", &Cepstrum::coefficients).within(2, 1000).doc("with the 0th");
   d.param("keep_zeroth", &Cepstrum::keep_zeroth).doc("keep the 0th coefficient");
-  d.param("lifter", &Cepstrum::lifter).at_least(0).doc("HTK's liftering parameter; 0: none");
+  d.param("orthonormal", &Cepstrum::orthonormal)
+      .doc("the 0th by √(1/M), as Kaldi and python_speech_features have it, not by HTK's √(2/M)");
+  d.param("lifter", &Cepstrum::lifter)
+      .at_least(0)
+      .doc("HTK's liftering parameter, 22 by default there, in Kaldi and in python_speech_features; 0: none");
 }
 
 }  // namespace talkgraph

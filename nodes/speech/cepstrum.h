@@ -11,7 +11,8 @@ namespace talkgraph {
 struct Cepstrum {
   int coefficients = 21;  ///< with the 0th
   bool keep_zeroth = false;
-  double lifter = 0;  ///< HTK's L: c_i times 1 + L/2 sin(π i / L); 0: none
+  bool orthonormal = false;  ///< c_0 by √(1/M)
+  double lifter = 0;         ///< HTK's L: c_i times 1 + L/2 sin(π i / L); 0: none
 
   Track operator()(const Track& track) const;
 };

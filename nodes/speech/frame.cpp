@@ -5,6 +5,15 @@
 #include <stdexcept>
 
 namespace talkgraph {
+namespace {
+
+/// Where sample `at` lies in n samples that go on mirrored at both ends, the end samples twice.
+Eigen::Index mirrored(Eigen::Index at, Eigen::Index n) {
+  const auto turn = ((at % (2 * n)) + 2 * n) % (2 * n);
+  return turn < n ? turn : 2 * n - 1 - turn;
+}
+
+}  // namespace
 
 Frames Frame::operator()(const Audio& audio) const {
   if (!(audio.rate > 0)) throw std::runtime_error("sound with a sample rate that is not positive");
@@ -23,10 +32,13 @@ Frames Frame::operator()(const Audio& audio) const {
   const auto begin = [&](Eigen::Index t) {
     return static_cast<Eigen::Index>(std::floor((static_cast<double>(t) * step - lead) / num + 0.5));
   };
-  Eigen::Index count =
-      std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(audio.seconds() * rate.value() - 1e-6)));
-  if (!centred) count += 1;
-  while (!centred && count > 1 && begin(count - 1) + length > samples) --count;
+  // Frames whose interval the sound begins; then the whole ones alone, or one more that covers the rest.
+  auto count = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::ceil(audio.seconds() * rate.value() - 1e-6)));
+  if (!centred) {
+    ++count;
+    while (count > 1 && begin(count - 1) + length > samples) --count;
+    if (ends != FrameEnds::whole && begin(count - 1) + length < samples) ++count;
+  }
 
   Frames out;
   out.rate = rate;
@@ -34,9 +46,13 @@ Frames Frame::operator()(const Audio& audio) const {
   out.sample_rate = audio.rate;
   out.values.resize(count, length);
   for (Eigen::Index t = 0; t < count; ++t) {
-    const auto from = std::max<Eigen::Index>(0, begin(t)), to = std::min(samples, begin(t) + length);
-    if (to - from < length) out.values.row(t).setZero();
-    if (from < to) out.values.row(t).segment(from - begin(t), to - from) = audio.samples.segment(from, to - from);
+    const auto start = begin(t), from = std::max<Eigen::Index>(0, start), to = std::min(samples, start + length);
+    if (to - from < length) {
+      out.values.row(t).setZero();
+      if (ends == FrameEnds::mirror && samples > 0)
+        for (Eigen::Index i = 0; i < length; ++i) out.values(t, i) = audio.samples[mirrored(start + i, samples)];
+    }
+    if (from < to) out.values.row(t).segment(from - start, to - from) = audio.samples.segment(from, to - from);
   }
   return out;
 }
@@ -48,6 +64,11 @@ void describe(Description<Frame>& d) {
   d.param("rate", &Frame::rate).positive().unit("1/s").doc("frames per second");
   d.param("centred", &Frame::centred)
       .doc("frame t lies around (t + ½) / rate, as video frames do: features straight at the video rate");
+  d.param("ends", &Frame::ends)
+      .doc(
+          "whole: only whole frames (HTK, Kaldi), but zeros where centred frames reach out; zeros: the last frame is "
+          "filled up "
+          "(python_speech_features); mirror: with the sound mirrored (Kaldi's --snip-edges=false, with centred)");
 }
 
 }  // namespace talkgraph

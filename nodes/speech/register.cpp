@@ -1,13 +1,18 @@
 #include "nodes/speech/register.h"
 
+#include "nodes/speech/all_pole.h"
+#include "nodes/speech/bark.h"
 #include "nodes/speech/cepstrum.h"
 #include "nodes/speech/deltas.h"
 #include "nodes/speech/energy.h"
 #include "nodes/speech/frame.h"
 #include "nodes/speech/join.h"
+#include "nodes/speech/loudness.h"
 #include "nodes/speech/mel.h"
 #include "nodes/speech/one_hot.h"
 #include "nodes/speech/preemphasis.h"
+#include "nodes/speech/rasta.h"
+#include "nodes/speech/remove_mean.h"
 #include "nodes/speech/spectrum.h"
 #include "nodes/speech/stack.h"
 #include "nodes/speech/window.h"
@@ -17,10 +22,16 @@ namespace talkgraph {
 void register_speech(Registry& registry) {
   registry.add<PreEmphasis>();
   registry.add<Frame>();
+  registry.add<RemoveMean>();
+  registry.add<FramePreEmphasis>();
   registry.add<Window>();
   registry.add<ShortTimeSpectrum>();
   registry.add<Mel>();
+  registry.add<Bark>();
   registry.add<Cepstrum>();
+  registry.add<Rasta>();
+  registry.add<Loudness>();
+  registry.add<AllPole>();
   registry.add<Energy>();
   registry.add<Join>();
   registry.add<Stack>();

@@ -26,7 +26,7 @@ Spectrum ShortTimeSpectrum::operator()(const Frames& frames) const {
   out.rate = frames.rate;
   out.start = frames.start;
   out.sample_rate = frames.sample_rate;
-  out.power = kind == SpectrumKind::power;
+  out.power = kind != SpectrumKind::magnitude;
   out.values.resize(count, half + 1);
   // Blocks stay in the processor's cache; a call makes one plan for its block.
   const auto block = std::min<Eigen::Index>(64, count);
@@ -45,15 +45,20 @@ Spectrum ShortTimeSpectrum::operator()(const Frames& frames) const {
       for (Eigen::Index k = 1; k < half; ++k) power[k] = bin[2 * k - 1] * bin[2 * k - 1] + bin[2 * k] * bin[2 * k];
       power[half] = bin[n - 1] * bin[n - 1];
     }
-    if (!out.power) out.values.middleRows(first, rows) = out.values.middleRows(first, rows).cwiseSqrt();
+    auto done = out.values.middleRows(first, rows);
+    if (kind == SpectrumKind::magnitude) done = done.cwiseSqrt();
+    if (kind == SpectrumKind::periodogram) done /= static_cast<double>(n);
   }
   return out;
 }
 
 void describe(Description<ShortTimeSpectrum>& d) {
-  d.type("speech.spectrum").version(2).summary("magnitude or power spectrum of each frame").source("Thesis §3.2");
+  d.type("speech.spectrum").version(2).summary("spectrum of each frame").source("Thesis §3.2");
   d.input("frames", "T x samples").output("spectrum", "T x bins, from 0 to the Nyquist frequency");
-  d.param("kind", &ShortTimeSpectrum::kind).doc("magnitude |DFT| (HTK's choice for MFCC) or power |DFT|²");
+  d.param("kind", &ShortTimeSpectrum::kind)
+      .doc(
+          "magnitude |DFT| (HTK), power |DFT|² (Kaldi, rastamat; HTK with USEPOWER), or periodogram |DFT|² / size "
+          "(python_speech_features)");
   d.param("size", &ShortTimeSpectrum::size).at_least(0).doc("points of the DFT; 0: the next power of two");
 }
 

@@ -5,13 +5,15 @@
 
 namespace talkgraph {
 
-enum class SpectrumKind { magnitude, power };
+enum class SpectrumKind { magnitude, power, periodogram };
 template <>
-inline constexpr EnumNames<SpectrumKind, 2> enum_names<SpectrumKind>{
-    {{SpectrumKind::magnitude, "magnitude"}, {SpectrumKind::power, "power"}}};
+inline constexpr EnumNames<SpectrumKind, 3> enum_names<SpectrumKind>{{{SpectrumKind::magnitude, "magnitude"},
+                                                                      {SpectrumKind::power, "power"},
+                                                                      {SpectrumKind::periodogram, "periodogram"}}};
 
 /// Short-time spectrum: frames padded with zeros to the next power of two
-/// (or to `size`), DFT, bins 0 to Nyquist (T × size / 2 + 1).
+/// (or to `size`), DFT, bins 0 to Nyquist (T × size / 2 + 1): magnitude |DFT|, power |DFT|², or periodogram |DFT|² /
+/// size.
 struct ShortTimeSpectrum {
   SpectrumKind kind = SpectrumKind::magnitude;
   int size = 0;  ///< points of the DFT, a power of two; 0: the next one

@@ -22,4 +22,9 @@ void fields(Archive& ar, Spectrum& s) {
   ar("power", s.power);
 }
 
+void fields(Archive& ar, Bands& b) {
+  ar("centres", b.centres, "Hz");
+  ar("nyquist", b.nyquist, "Hz");
+}
+
 }  // namespace talkgraph

@@ -34,4 +34,13 @@ template <>
 inline constexpr PortType port_type<Spectrum>{"Spectrum", 1};
 void fields(Archive& ar, Spectrum& s);
 
+/// Where the filters of a bank lie.
+struct Bands {
+  Eigen::VectorXd centres;  ///< Hz
+  double nyquist = 8000;    ///< of the sound, Hz
+};
+template <>
+inline constexpr PortType port_type<Bands>{"Bands", 1};
+void fields(Archive& ar, Bands& b);
+
 }  // namespace talkgraph

@@ -63,6 +63,39 @@ TEST(Frame, CentredFramesArePaddedWithZeros) {
   EXPECT_EQ(Eigen::RowVectorXd(frames.values.row(0)), expected);
 }
 
+TEST(Frame, FillsUpTheLastFrameOnDemand) {
+  const auto rows = [](FrameEnds ends, int samples) { return Frame{.ends = ends}(ramp(samples)).values; };
+  for (const auto ends : {FrameEnds::zeros, FrameEnds::mirror}) {
+    EXPECT_EQ(rows(ends, 1).rows(), 1);
+    EXPECT_EQ(rows(ends, 400).rows(), 1);
+    EXPECT_EQ(rows(ends, 401).rows(), 2);
+    EXPECT_EQ(rows(ends, 560).rows(), 2);
+    EXPECT_EQ(rows(ends, 561).rows(), 3);
+  }
+  const FrameMatrix zeros = rows(FrameEnds::zeros, 410), mirror = rows(FrameEnds::mirror, 410);
+  EXPECT_EQ(zeros(1, 249), 409);
+  EXPECT_EQ(zeros(1, 250), 0);
+  EXPECT_EQ(mirror(1, 249), 409);
+  EXPECT_EQ(mirror(1, 250), 409);
+  EXPECT_EQ(mirror(1, 251), 408);
+  EXPECT_TRUE(rows(FrameEnds::mirror, 0).isZero(0));
+}
+
+// Kaldi's --snip-edges=false: frame t begins at 160 (t + ½) - 200, what lies outside is mirrored.
+TEST(Frame, MirrorsBothEndsOfCentredFrames) {
+  const FrameMatrix frames = Frame{.centred = true, .ends = FrameEnds::mirror}(ramp(480)).values;
+  ASSERT_EQ(frames.rows(), 3);
+  for (int t = 0; t < 3; ++t)
+    for (int i = 0; i < 400; ++i) {
+      int at = 160 * t - 120 + i;
+      if (at < 0) at = -at - 1;
+      if (at >= 480) at = 2 * 480 - 1 - at;
+      ASSERT_EQ(frames(t, i), at) << t << " " << i;
+    }
+  const FrameMatrix short_sound = Frame{.centred = true, .ends = FrameEnds::mirror}(ramp(3)).values;
+  EXPECT_EQ(short_sound.maxCoeff(), 2);  // mirrored again and again
+}
+
 TEST(Frame, PadsShortSoundWithZeros) {
   for (const bool centred : {false, true}) {
     const Frame frame{.centred = centred};

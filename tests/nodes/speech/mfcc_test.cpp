@@ -2,100 +2,123 @@
 
 #include <cmath>
 #include <complex>
-#include <numbers>
 
-#include "graph/random.h"
-#include "nodes/speech/cepstrum.h"
 #include "nodes/speech/energy.h"
-#include "nodes/speech/frame.h"
-#include "nodes/speech/mel.h"
-#include "nodes/speech/preemphasis.h"
-#include "nodes/speech/spectrum.h"
-#include "nodes/speech/window.h"
+#include "nodes/speech/remove_mean.h"
+#include "tests/nodes/speech/chains.h"
+#include "tests/nodes/speech/written_out.h"
 
 namespace talkgraph {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-Audio noise(int samples, double rate = 16000) {
-  Audio a;
-  a.rate = rate;
-  a.samples.resize(samples);
-  Random random(7);
-  for (auto& x : a.samples) x = 0.1 * random.normal();
-  return a;
-}
-
-Track mfcc(const Audio& audio) {
-  return Cepstrum{}(Mel{}(ShortTimeSpectrum{}(Window{}(Frame{}(PreEmphasis{}(audio))))));
-}
-
-// The whole chain once more, written straight from the formulas: direct DFT,
-// filters by their edges in Hz.
-std::vector<double> direct_mfcc(const Audio& audio, int t) {
-  const int n = 400, hop = 160, size = 512, filters = 30;
-  std::vector<double> x(n);
-  for (int i = 0; i < n; ++i) {
-    const int at = t * hop + i;
-    const double before = at > 0 ? audio.samples[at - 1] : audio.samples[0];
-    x[i] = 32768 * (audio.samples[at] - 0.97 * before) * (0.54 - 0.46 * std::cos(2 * pi * i / (n - 1)));
-  }
-  std::vector<double> magnitude(size / 2 + 1);
-  for (int k = 0; k <= size / 2; ++k) {
-    std::complex<double> sum = 0;
-    for (int i = 0; i < n; ++i) sum += x[i] * std::polar(1.0, -2 * pi * k * i / size);
-    magnitude[k] = std::abs(sum);
-  }
-  const auto mel = [](double hz) { return 1127 * std::log(1 + hz / 700); };
-  std::vector<double> log_filter(filters);
-  for (int m = 0; m < filters; ++m) {
-    const double step = mel(8000) / (filters + 1), left = m * step, centre = left + step, right = centre + step;
-    double sum = 0;
-    for (int k = 0; k <= size / 2; ++k) {
-      const double at = mel(k * 8000.0 / (size / 2));
-      if (at > left && at <= centre) sum += magnitude[k] * (at - left) / step;
-      if (at > centre && at < right) sum += magnitude[k] * (right - at) / step;
-    }
-    log_filter[m] = std::log(std::max(1.0, sum));
-  }
-  std::vector<double> c;
-  for (int i = 1; i <= 20; ++i) {
-    double sum = 0;
-    for (int m = 0; m < filters; ++m) sum += log_filter[m] * std::cos(pi * i * (m + 0.5) / filters);
-    c.push_back(std::sqrt(2.0 / filters) * sum);
-  }
-  return c;
-}
+using test::noise;
+using test::Numbers;
+using test::pi;
 
 TEST(Mfcc, AgreesWithTheFormulasWrittenOut) {
-  const Audio audio = noise(4000);
-  const Track track = mfcc(audio);
+  const Audio audio = test::voice(0.5);
+  const Track track = test::mfcc(audio);
   ASSERT_EQ(track.dimension(), 20);
-  for (const int t : {0, 5, static_cast<int>(track.frames()) - 1}) {
-    const auto expected = direct_mfcc(audio, t);
-    for (int i = 0; i < 20; ++i) EXPECT_NEAR(track.values(t, i), expected[i], 1e-9) << t << " " << i;
+  double most = 0;
+  for (int t = 0; t < track.frames(); t += 6) {
+    const Numbers frame = test::windowed_frame(audio, t, 400, 160, 0.97, test::hamming);
+    const Numbers expected = test::dct_of_logs(test::mel_sums(test::magnitudes(frame, 512), 30, 16000, 0), 1, 20);
+    for (int i = 0; i < 20; ++i) most = std::max(most, std::abs(track.values(t, i) - expected[i]));
+  }
+  EXPECT_LT(most, 1e-10);
+  RecordProperty("difference", std::to_string(1e12 * most) + "e-12");
+}
+
+// Kaldi's compute-mfcc-feats without dither: frame by frame the mean off, pre-emphasis, Povey's window, power spectrum,
+// from 20 Hz, orthonormal DCT, lifter 22.
+TEST(Mfcc, MatchesTheConventionsOfKaldi) {
+  Audio audio = test::voice(0.3);
+  audio.samples.array() += 0.01;
+  const Frames frames = FramePreEmphasis{}(RemoveMean{}(Frame{}(audio)));
+  const Spectrum spectrum = ShortTimeSpectrum{.kind = SpectrumKind::power}(Window{.shape = WindowShape::povey}(frames));
+  const Track logs = Mel{.filters = 23, .low = 20, .floor = 1.1920929e-7}(spectrum).track;
+  const Track track = Cepstrum{.coefficients = 13, .keep_zeroth = true, .orthonormal = true, .lifter = 22}(logs);
+  ASSERT_EQ(track.dimension(), 13);
+  for (const int t : {0, 11, 27}) {
+    Numbers x(400), y(400);
+    double mean = 0;
+    for (int i = 0; i < 400; ++i) mean += 32768 * audio.samples[160 * t + i] / 400;
+    for (int i = 0; i < 400; ++i) x[i] = 32768 * audio.samples[160 * t + i] - mean;
+    for (int i = 0; i < 400; ++i)
+      y[i] = (x[i] - 0.97 * x[std::max(0, i - 1)]) * std::pow(0.5 - 0.5 * std::cos(2 * pi * i / 399), 0.85);
+    Numbers power = test::magnitudes(y, 512);
+    for (auto& p : power) p *= p;
+    const Numbers sums = test::mel_sums(power, 23, 16000, 20), c = test::dct_of_logs(sums, 1.1920929e-7, 12);
+    double zeroth = 0;
+    for (const double sum : sums) zeroth += std::log(sum) / std::sqrt(23.0);
+    EXPECT_NEAR(track.values(t, 0), zeroth, 1e-9);
+    for (int i = 1; i < 13; ++i)
+      EXPECT_NEAR(track.values(t, i), c[i - 1] * (1 + 11 * std::sin(pi * i / 22)), 1e-9) << t << " " << i;
   }
 }
 
-TEST(Mfcc, IsFiniteOnSilenceClippingAndOneSample) {
-  Audio audio;
-  for (const int n : {1, 399, 16000}) {
-    audio.samples = Eigen::VectorXd::Zero(n);
-    EXPECT_TRUE(mfcc(audio).values.allFinite()) << n;
-    audio.samples.setOnes();
-    EXPECT_TRUE(mfcc(audio).values.allFinite()) << n;
+// python_speech_features.mfcc on samples of 16 bits: no window, |DFT|² / 512, edges rounded down to bins.
+TEST(Mfcc, MatchesTheConventionsOfPythonSpeechFeatures) {
+  const Audio audio = test::voice(0.305);
+  const Frames frames = Frame{.ends = FrameEnds::zeros}(PreEmphasis{}(audio));
+  ASSERT_EQ(frames.values.rows(), 29);  // 1 + (4880 - 400) / 160, rounded up
+  const Mel mel{.filters = 26, .triangles = Triangles::bins, .floor = 2.220446049250313e-16};
+  const Track track = Cepstrum{.coefficients = 13, .keep_zeroth = true, .orthonormal = true, .lifter = 22}(
+      mel(ShortTimeSpectrum{.kind = SpectrumKind::periodogram}(frames)).track);
+  const auto to_mel = [](double hz) { return 2595 * std::log10(1 + hz / 700); };
+  std::vector<int> bin(28);
+  for (int m = 0; m < 28; ++m)
+    bin[m] = static_cast<int>(std::floor(513 * 700 * (std::pow(10, m * to_mel(8000) / 27 / 2595) - 1) / 16000));
+  for (const int t : {0, 13, 28}) {
+    Numbers x(400);
+    for (int i = 0; i < 400 && 160 * t + i < 4880; ++i) {
+      const int at = 160 * t + i;
+      x[i] = 32768 * (audio.samples[at] - 0.97 * (at > 0 ? audio.samples[at - 1] : 0));
+    }
+    const Numbers magnitude = test::magnitudes(x, 512);
+    Numbers sums(26);
+    for (int m = 0; m < 26; ++m) {
+      for (int k = bin[m]; k < bin[m + 1]; ++k)
+        sums[m] += magnitude[k] * magnitude[k] / 512 * (k - bin[m]) / (bin[m + 1] - bin[m]);
+      for (int k = bin[m + 1]; k < bin[m + 2]; ++k)
+        sums[m] += magnitude[k] * magnitude[k] / 512 * (bin[m + 2] - k) / (bin[m + 2] - bin[m + 1]);
+    }
+    double zeroth = 0;
+    for (const double sum : sums) zeroth += std::log(sum) / std::sqrt(26.0);
+    EXPECT_NEAR(track.values(t, 0), zeroth, 1e-9);
+    const Numbers c = test::dct_of_logs(sums, 2.220446049250313e-16, 12);
+    for (int i = 1; i < 13; ++i)
+      EXPECT_NEAR(track.values(t, i), c[i - 1] * (1 + 11 * std::sin(pi * i / 22)), 1e-9) << t << " " << i;
   }
-  audio.samples.resize(0);
-  EXPECT_EQ(mfcc(audio).frames(), 1);
 }
 
 TEST(PreEmphasis, FollowsItsEquation) {
   Audio a;
   a.samples = Eigen::Vector3d(1, 2, 4);
-  EXPECT_TRUE(PreEmphasis{0.5}(a).samples.isApprox(Eigen::Vector3d(0.5, 1.5, 3)));
+  EXPECT_TRUE(PreEmphasis{0.5}(a).samples.isApprox(Eigen::Vector3d(1, 1.5, 3)));
+  EXPECT_TRUE((PreEmphasis{0.5, BeforeFirst::repeat}(a).samples.isApprox(Eigen::Vector3d(0.5, 1.5, 3))));
   a.samples.resize(0);
   EXPECT_EQ(PreEmphasis{}(a).samples.size(), 0);
+}
+
+TEST(PreEmphasis, InEachFrameStartsAnew) {
+  Frames frames;
+  frames.values.resize(2, 3);
+  frames.values << 1, 2, 4, 8, 6, 6;
+  FrameMatrix expected(2, 3);
+  expected << 0.5, 1.5, 3, 4, 2, 3;
+  EXPECT_TRUE(FramePreEmphasis{0.5}(frames).values.isApprox(expected));
+  frames.values.resize(0, 3);
+  EXPECT_EQ(FramePreEmphasis{}(frames).values.rows(), 0);
+}
+
+TEST(RemoveMean, TakesEachFramesOwn) {
+  Frames frames;
+  frames.values.resize(2, 2);
+  frames.values << 1, 3, 5, 5;
+  FrameMatrix expected(2, 2);
+  expected << -1, 1, 0, 0;
+  EXPECT_EQ(RemoveMean{}(frames).values, expected);
 }
 
 // Filter m of a hand-sized bank: 3 filters over 8 kHz, edges at equal steps of mel.
@@ -127,8 +150,36 @@ TEST(Mel, ScalesMagnitudeAndPowerAsTheSamples) {
   for (const auto kind : {SpectrumKind::magnitude, SpectrumKind::power}) {
     const ShortTimeSpectrum spectrum{.kind = kind};
     const double share = std::log(kind == SpectrumKind::power ? 100 : 10);
-    const Eigen::ArrayXXd more = Mel{}(spectrum(Frame{}(loud))).values - Mel{}(spectrum(Frame{}(a))).values;
+    const Eigen::ArrayXXd more = Mel{}(spectrum(Frame{}(loud))).track.values - Mel{}(spectrum(Frame{}(a))).track.values;
     EXPECT_LT((more - share).abs().maxCoeff(), 1e-10);
+  }
+}
+
+TEST(Mel, SaysWhereItsFiltersLie) {
+  const Bands bands = Mel{.filters = 3}(ShortTimeSpectrum{}(Frame{}(noise(800, 8000)))).bands;
+  EXPECT_EQ(bands.nyquist, 4000);
+  ASSERT_EQ(bands.centres.size(), 3);
+  EXPECT_NEAR(bands.centres[1], 1113.84, 0.01);
+}
+
+// Where librosa's documentation puts hertz on Slaney's scale: 200 Hz at 3 mel, 440 at 6.6, 1000 at 15, 6400 at 42.
+TEST(Mel, KnowsSlaneysScale) {
+  const Mel mel{.filters = 13, .mel = MelScale::slaney, .triangles = Triangles::hertz};
+  const Eigen::VectorXd edges =
+      Mel{.filters = 13, .high = 6400, .mel = MelScale::slaney}.edges(8000);  // steps of 3 mel
+  EXPECT_NEAR(edges[1], 200, 1e-9);
+  EXPECT_NEAR(edges[5], 1000, 1e-9);
+  EXPECT_NEAR(edges[14], 6400, 1e-9);
+  EXPECT_NEAR(edges[6] / edges[5], std::pow(6.4, 3 / 27.0), 1e-12);
+  // Triangles linear in hertz; of area one on demand.
+  Mel area = mel;
+  area.unit_area = true;
+  const Eigen::MatrixXd peak = mel.weights(8001, 1), unit = area.weights(8001, 1);
+  const Eigen::VectorXd hz = mel.edges(8000);
+  for (int m = 0; m < 13; ++m) {
+    EXPECT_NEAR(unit.col(m).sum(), 1, 1e-3);
+    const auto k = static_cast<Eigen::Index>((hz[m] + hz[m + 1]) / 2);
+    EXPECT_NEAR(peak(k, m), (static_cast<double>(k) - hz[m]) / (hz[m + 1] - hz[m]), 1e-12);
   }
 }
 
@@ -145,6 +196,7 @@ TEST(Spectrum, IsTheDftOfThePaddedFrame) {
   for (const int size : {8, 16}) {
     const Spectrum magnitude = ShortTimeSpectrum{.size = size}(frames);
     const Spectrum power = ShortTimeSpectrum{.kind = SpectrumKind::power, .size = size}(frames);
+    const Spectrum periodogram = ShortTimeSpectrum{.kind = SpectrumKind::periodogram, .size = size}(frames);
     ASSERT_EQ(magnitude.values.cols(), size / 2 + 1);
     EXPECT_DOUBLE_EQ(magnitude.bin_hz(), 16000.0 / size);
     for (int t = 0; t < 70; ++t)
@@ -153,6 +205,7 @@ TEST(Spectrum, IsTheDftOfThePaddedFrame) {
         for (int i = 0; i < 5; ++i) sum += frames.values(t, i) * std::polar(1.0, -2 * pi * k * i / size);
         EXPECT_NEAR(magnitude.values(t, k), std::abs(sum), 1e-13);
         EXPECT_NEAR(power.values(t, k), std::norm(sum), 1e-13);
+        EXPECT_NEAR(periodogram.values(t, k), std::norm(sum) / size, 1e-13);
       }
   }
   frames.values = FrameMatrix::Ones(1, 1);
@@ -174,6 +227,18 @@ TEST(Window, IsSymmetric) {
   EXPECT_EQ(Window{}(frames).values(0, 0), 1);
 }
 
+TEST(Window, HasOtherShapesAndSpans) {
+  Eigen::RowVectorXd expected(5);
+  expected << 0, 0.34, 1, 0.34, 0;
+  EXPECT_LT((Window{WindowShape::blackman}.weights(5) - expected).cwiseAbs().maxCoeff(), 1e-14);
+  expected << 0, std::pow(0.5, 0.85), 1, std::pow(0.5, 0.85), 0;
+  EXPECT_LT((Window{WindowShape::povey}.weights(5) - expected).cwiseAbs().maxCoeff(), 1e-14);
+  // A longer symmetric window without its last sample, or without both ends.
+  const Window whole{WindowShape::hann};
+  EXPECT_TRUE((Window{WindowShape::hann, WindowSpan::periodic}.weights(8).isApprox(whole.weights(9).head(8))));
+  EXPECT_TRUE((Window{WindowShape::hann, WindowSpan::open}.weights(8).isApprox(whole.weights(10).segment(1, 8))));
+}
+
 TEST(Spectrum, RefusesADftShorterThanTheFrame) {
   EXPECT_THROW((ShortTimeSpectrum{.size = 256}(Frame{}(noise(800)))), std::invalid_argument);
   EXPECT_THROW((ShortTimeSpectrum{.size = 500}(Frame{}(noise(800)))), std::invalid_argument);
@@ -190,6 +255,8 @@ TEST(Cepstrum, LiftsAndKeepsTheZerothOnDemand) {
     EXPECT_TRUE(lifted.values.col(i).isApprox(lift * plain.values.col(i - 1)));
   }
   EXPECT_EQ(lifted.names.front(), "c0");
+  const Track orthonormal = Cepstrum{.coefficients = 30, .keep_zeroth = true, .orthonormal = true}(log_filters);
+  EXPECT_TRUE(orthonormal.values.rowwise().norm().isApprox(log_filters.values.rowwise().norm()));
   EXPECT_THROW(Cepstrum{.coefficients = 31}(log_filters), std::invalid_argument);
 }
 

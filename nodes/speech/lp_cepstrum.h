@@ -1,0 +1,14 @@
+#pragma once
+
+#include "nodes/speech/levinson.h"
+
+namespace talkgraph {
+
+/// Cepstrum c_0, c_1 ... of the all-pole spectrum error / |A|²: c_0 = ln error, c_n = a_n + Σ_k (1 - k / n) a_k
+/// c_(n-k). `out` says how many; c_0 of silence, whose error is 0, is that of the least number.
+void lp_cepstrum(const LinearPrediction& predictor, Eigen::Ref<Eigen::VectorXd> out);
+
+/// HTK's weight of the cepstral coefficient n, 1 + L/2 sin(π n / L); 1 for L = 0.
+double lifter_weight(int n, double length);
+
+}  // namespace talkgraph
