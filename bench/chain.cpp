@@ -5,12 +5,11 @@
 #include <oneapi/tbb/task_arena.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <functional>
 
 #include "bench/child.h"
+#include "bench/rows.h"
 #include "graph/output_file.h"
 #include "runtime/executor.h"
 
@@ -20,7 +19,6 @@ namespace bench {
 constexpr std::uint64_t items = 1'000'000;
 constexpr int nodes = 10;
 constexpr int threads = 2;
-constexpr int rounds = 5;
 
 struct Number {
   std::uint64_t value = 0;
@@ -186,34 +184,11 @@ std::string hundred_nodes() {
     add("window", "speech.window", "frames", branch("frame"), "");
     add("spectrum", "speech.spectrum", "frames", branch("window"), "");
     add("mel", "speech.mel", "spectrum", branch("spectrum"), R"("filters": 26)");
-    add("slow", "sync.polyphase", "track", branch("mel"), R"("rate": 25)");
+    add("slow", "sync.polyphase", "track", branch("mel") + ".track", R"("rate": 25)");
     add("fast", "sync.polyphase", "track", branch("slow"), R"("rate": 100)");
     add("write", "write.hdf5", "value", branch("fast"), "");
   }
   return text + "}}\n";
-}
-
-struct Row {
-  std::string name;
-  std::function<double()> measure;  ///< seconds of processor time
-  std::vector<double> seen = {};
-
-  double median() const { return seen[seen.size() / 2]; }
-};
-
-std::function<double()> own(std::function<void()> work) {
-  return [work = std::move(work)] {
-    const double before = cpu_time();
-    work();
-    return cpu_time() - before;
-  };
-}
-
-/// Measures all rows again and again in turn, so that a busy spell of the machine meets all of them.
-void measure(std::vector<Row>& rows) {
-  for (int round = 0; round < rounds; ++round)
-    for (auto& row : rows) row.seen.push_back(row.measure());
-  for (auto& row : rows) std::sort(row.seen.begin(), row.seen.end());
 }
 
 void compare(const std::string& talkgraph) {

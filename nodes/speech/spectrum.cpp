@@ -28,26 +28,26 @@ Spectrum ShortTimeSpectrum::operator()(const Frames& frames) const {
   out.sample_rate = frames.sample_rate;
   out.power = kind != SpectrumKind::magnitude;
   out.values.resize(count, half + 1);
+  const Eigen::RowVectorXd weights = window.weights(length);
   // Blocks stay in the processor's cache; a call makes one plan for its block.
   const auto block = std::min<Eigen::Index>(64, count);
   FrameMatrix in = FrameMatrix::Zero(block, n), bins(block, n);
   for (Eigen::Index first = 0; first < count; first += block) {
     const auto rows = std::min(block, count - first);
-    in.topLeftCorner(rows, length) = frames.values.middleRows(first, rows);
+    in.topLeftCorner(rows, length) = frames.values.middleRows(first, rows) * weights.asDiagonal();
     cv::Mat from(static_cast<int>(rows), static_cast<int>(n), CV_64F, in.data());
     cv::Mat to(static_cast<int>(rows), static_cast<int>(n), CV_64F, bins.data());
     cv::dft(from, to, cv::DFT_ROWS);
     // A row holds Re 0, Re 1, Im 1, Re 2, Im 2 ... Re n/2.
     for (Eigen::Index t = 0; t < rows; ++t) {
       const double* bin = bins.row(t).data();
-      double* power = out.values.row(first + t).data();
-      power[0] = bin[0] * bin[0];
-      for (Eigen::Index k = 1; k < half; ++k) power[k] = bin[2 * k - 1] * bin[2 * k - 1] + bin[2 * k] * bin[2 * k];
-      power[half] = bin[n - 1] * bin[n - 1];
+      auto row = out.values.row(first + t);
+      row[0] = bin[0] * bin[0];
+      for (Eigen::Index k = 1; k < half; ++k) row[k] = bin[2 * k - 1] * bin[2 * k - 1] + bin[2 * k] * bin[2 * k];
+      row[half] = bin[n - 1] * bin[n - 1];
+      if (kind == SpectrumKind::magnitude) row = row.cwiseSqrt();
+      if (kind == SpectrumKind::periodogram) row /= static_cast<double>(n);
     }
-    auto done = out.values.middleRows(first, rows);
-    if (kind == SpectrumKind::magnitude) done = done.cwiseSqrt();
-    if (kind == SpectrumKind::periodogram) done /= static_cast<double>(n);
   }
   return out;
 }
@@ -55,6 +55,7 @@ Spectrum ShortTimeSpectrum::operator()(const Frames& frames) const {
 void describe(Description<ShortTimeSpectrum>& d) {
   d.type("speech.spectrum").version(2).summary("spectrum of each frame").source("Thesis §3.2");
   d.input("frames", "T x samples").output("spectrum", "T x bins, from 0 to the Nyquist frequency");
+  d.param("window", &ShortTimeSpectrum::window).doc("what the frames are weighed with first; none by default");
   d.param("kind", &ShortTimeSpectrum::kind)
       .doc(
           "magnitude |DFT| (HTK), power |DFT|² (Kaldi, rastamat; HTK with USEPOWER), or periodogram |DFT|² / size "

@@ -22,6 +22,14 @@ double weight(WindowShape shape, double theta) {
   return 1;
 }
 
+template <class D>
+void describe_window(D& d) {
+  d.param("shape", &Window::shape)
+      .doc("HTK: hamming; Kaldi: povey; rastamat: hann, open; python_speech_features: rectangular");
+  d.param("span", &Window::span)
+      .doc("symmetric: from end to end; periodic: without the last sample; open: without the zeros at both ends");
+}
+
 }  // namespace
 
 Eigen::RowVectorXd Window::weights(Eigen::Index samples) const {
@@ -41,12 +49,9 @@ Frames Window::operator()(const Frames& frames) const {
 void describe(Description<Window>& d) {
   d.type("speech.window").summary("weighs each frame with a window").source("Thesis §3.2");
   d.input("frames", "T x samples").output("frames", "the same, weighed");
-  d.param("shape", &Window::shape)
-      .doc("HTK: hamming; Kaldi: povey; rastamat: hann, open; python_speech_features: rectangular");
-  d.param("span", &Window::span)
-      .doc(
-          "symmetric: from end to end; periodic: the last sample is left out; open: the zeros at both ends are left "
-          "out");
+  describe_window(d);
 }
+
+void parameters(Parameters<Window>& p) { describe_window(p); }
 
 }  // namespace talkgraph

@@ -31,5 +31,6 @@ struct Window {
   Eigen::RowVectorXd weights(Eigen::Index samples) const;
 };
 void describe(Description<Window>& d);
+void parameters(Parameters<Window>& p);  // for nodes that weigh frames on the way
 
 }  // namespace talkgraph

@@ -9,13 +9,12 @@
 #include "nodes/speech/preemphasis.h"
 #include "nodes/speech/rasta.h"
 #include "nodes/speech/spectrum.h"
-#include "nodes/speech/window.h"
 
 /// The chains of pipelines/fragments/features, as calls.
 namespace talkgraph::test {
 
 inline Spectrum spectrum(const Audio& audio, SpectrumKind kind, const Frame& frame = {}) {
-  return ShortTimeSpectrum{.kind = kind}(Window{}(frame(PreEmphasis{}(audio))));
+  return ShortTimeSpectrum{.window = {}, .kind = kind}(frame(PreEmphasis{}(audio)));
 }
 
 inline Track mfcc(const Audio& audio, const Frame& frame = {}) {

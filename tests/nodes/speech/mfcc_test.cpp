@@ -239,6 +239,12 @@ TEST(Window, HasOtherShapesAndSpans) {
   EXPECT_TRUE((Window{WindowShape::hann, WindowSpan::open}.weights(8).isApprox(whole.weights(10).segment(1, 8))));
 }
 
+TEST(Spectrum, WeighsTheFramesOnTheWay) {
+  const Frames frames = Frame{}(noise(4000));
+  const Window window{WindowShape::blackman};
+  EXPECT_TRUE(ShortTimeSpectrum{.window = window}(frames).values.isApprox(ShortTimeSpectrum{}(window(frames)).values));
+}
+
 TEST(Spectrum, RefusesADftShorterThanTheFrame) {
   EXPECT_THROW((ShortTimeSpectrum{.size = 256}(Frame{}(noise(800)))), std::invalid_argument);
   EXPECT_THROW((ShortTimeSpectrum{.size = 500}(Frame{}(noise(800)))), std::invalid_argument);
