@@ -17,8 +17,9 @@ Eigen::Index mirrored(Eigen::Index at, Eigen::Index n) {
 
 Frames Frame::operator()(const Audio& audio) const {
   if (!(audio.rate > 0)) throw std::runtime_error("sound with a sample rate that is not positive");
-  if (!audio.samples.allFinite())
-    throw std::runtime_error("sound with NaN or infinite samples: look at the file that it was read from");
+  if (!(audio.samples.array().abs() <= 1e100).all())  // their squares add up to a number
+    throw std::runtime_error(
+        "sound with NaN or infinite samples, or some above 1e100: look at the file that it was read from");
   const auto samples = audio.samples.size();
   const auto length = static_cast<Eigen::Index>(std::lround(window * audio.rate));
   const double hop = audio.rate / rate.value();  // samples, not whole in general

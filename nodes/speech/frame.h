@@ -22,8 +22,8 @@ inline constexpr EnumNames<FrameEnds, 3> enum_names<FrameEnds>{
 /// Mirrored at both ends they are Kaldi's --snip-edges=false, which may have one less. Whatever `ends` says, what must
 /// be filled up is: with zeros, unless with the sound mirrored.
 ///
-/// Throws std::runtime_error on NaN or infinite samples, std::invalid_argument
-/// where window or hop is shorter than a sample. Thesis §3.2, §3.5.1.
+/// Throws std::runtime_error on NaN or infinite samples and on those above 1e100, whose squares overflow,
+/// std::invalid_argument where window or hop is shorter than a sample. Thesis §3.2, §3.5.1.
 struct Frame {
   double window = 0.025;  ///< seconds
   Rational rate{100};     ///< frames per second

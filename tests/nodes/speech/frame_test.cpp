@@ -115,6 +115,10 @@ TEST(Frame, RefusesBrokenSound) {
   EXPECT_THROW(Frame{}(audio), std::runtime_error);
   audio.samples[500] = INFINITY;
   EXPECT_THROW(Frame{}(audio), std::runtime_error);
+  audio.samples[500] = -1e101;
+  EXPECT_THROW(Frame{}(audio), std::runtime_error);
+  audio.samples[500] = -1e100;
+  EXPECT_NO_THROW(Frame{}(audio));
   EXPECT_THROW(Frame{}(ramp(1000, 0)), std::runtime_error);
   EXPECT_THROW(Frame{}(ramp(1000, NAN)), std::runtime_error);
 }

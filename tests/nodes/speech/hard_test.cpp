@@ -42,7 +42,7 @@ TEST_P(HardInput, GivesFiniteNumbersAtEveryRate) {
                {"DC", Eigen::VectorXd::Ones(n)},
                {"impulse", Eigen::VectorXd::Unit(n, n / 2)},
                {"the least number", Eigen::VectorXd::Constant(n, std::numeric_limits<double>::denorm_min())},
-               {"far above full scale", 1e30 * voice.samples},
+               {"far above full scale", 1e90 * voice.samples},
                {"one sample", Eigen::VectorXd::Ones(1)},
                {"no sample", Eigen::VectorXd()}}) {
         const Track track = at(sound(samples, rate), frame);

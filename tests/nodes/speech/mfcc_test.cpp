@@ -92,6 +92,22 @@ TEST(Mfcc, MatchesTheConventionsOfPythonSpeechFeatures) {
   }
 }
 
+// What SPTK 3.9, which computes in single precision, gives for one frame:
+//   awk 'BEGIN { for (i = 0; i < 400; ++i) printf "%d\n", 3000 * sin(0.1 * i) + 1000 * sin(0.002 * i * i) }' |
+//     sptk x2x +af | sptk mfcc -l 400 -L 512 -m 20 -n 30 -c 22 | sptk x2x +fa%.7g
+TEST(Mfcc, AgreesWithSptk) {
+  const Numbers expected = {-1.343559, -34.58412, 17.42816, -4.774242, -10.00528, -3.874714, -24.18918,
+                            -19.40443, -23.22596, -24.6172, -14.99709, -13.76757, -5.193965, 0.1508743,
+                            2.233837,  5.900829,  4.814172, 4.481259,  3.518338,  1.795877};
+  Audio audio;
+  audio.samples.resize(400);
+  for (int i = 0; i < 400; ++i)
+    audio.samples[i] = std::trunc(3000 * std::sin(0.1 * i) + 1000 * std::sin(0.002 * i * i)) / 32768;
+  const Track track =
+      Cepstrum{.lifter = 22}(Mel{}(ShortTimeSpectrum{.window = {}}(FramePreEmphasis{}(Frame{}(audio)))).track);
+  for (int i = 0; i < 20; ++i) EXPECT_NEAR(track.values(0, i), expected[i], 5e-6) << i;
+}
+
 TEST(PreEmphasis, FollowsItsEquation) {
   Audio a;
   a.samples = Eigen::Vector3d(1, 2, 4);
