@@ -57,6 +57,15 @@ TEST(Deltas, FollowTheirFormulaAtTheEnds) {
   EXPECT_EQ(Deltas{}(Track{}).frames(), 0);
 }
 
+TEST(Deltas, OfDeltasAreTheCurvature) {
+  Track parabola;
+  parabola.values = Eigen::VectorXd::LinSpaced(20, 0, 19).cwiseAbs2();
+  parabola.names = {"c1"};
+  const Track twice = Deltas{}(Deltas{}(parabola));
+  for (int t = 4; t < 16; ++t) EXPECT_NEAR(twice.values(t, 0), 2, 1e-12);
+  EXPECT_EQ(twice.names[0], "delta delta c1");
+}
+
 TEST(OneHot, MarksTheLabelOfEachFrame) {
   const Track t = OneHot{{"sil", "aa", "b"}}(FrameLabels{{"aa", "sil", "aa"}, Rational(50)});
   Eigen::MatrixXd expected(3, 3);
