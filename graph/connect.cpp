@@ -47,7 +47,7 @@ class Connector {
     for (std::size_t p = 0; p < made.type->inputs.size(); ++p) {
       const auto& spec = made.type->inputs[p];
       const auto* given = in ? in->value.find(spec.name) : nullptr;
-      if (!given) {
+      if (!given || given->value.is(Kind::null)) {
         if (spec.kind != PortSpec::Kind::optional) {
           diagnostics_.error(made.place, fmt::format("node \"{}\": input \"{}\" ({}) is not wired", made.name,
                                                      spec.name, spec.type.name));

@@ -5,7 +5,9 @@
 
 namespace talkgraph {
 
-Track Join::operator()(const Track& a, const Track& b) const {
+Track Join::operator()(const Track& a, const Track* other) const {
+  if (!other) return a;
+  const Track& b = *other;
   if (a.rate != b.rate || std::abs(a.start - b.start) > 1e-6)
     throw std::runtime_error(
         "tracks at " + a.rate.str() + " and " + b.rate.str() +
@@ -29,7 +31,7 @@ Track Join::operator()(const Track& a, const Track& b) const {
 void describe(Description<Join>& d) {
   d.type("speech.join").summary("two tracks side by side");
   d.input("a", "the first dimensions")
-      .input("b", "of the same rate, the dimensions behind them")
+      .input("b", "of the same rate, the dimensions behind them; without it there is a alone")
       .output("track", "both, as long as the shorter");
 }
 

@@ -5,10 +5,10 @@
 
 namespace talkgraph {
 
-/// Two tracks side by side (T × D_a + D_b). They must share rate and start and
-/// may differ by two frames in length.
+/// Two tracks side by side (T × D_a + D_b), or `a` alone where there is no `b`. They must
+/// share rate and start and may differ by two frames in length.
 struct Join {
-  Track operator()(const Track& a, const Track& b) const;
+  Track operator()(const Track& a, const Track* b) const;
 };
 void describe(Description<Join>& d);
 

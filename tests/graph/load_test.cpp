@@ -155,6 +155,17 @@ TEST_F(Load, UsesAGraphAsANode) {
   EXPECT_EQ(resolved->resolved, graph->resolved);
 }
 
+TEST_F(Load, LeavesAnInputOpenThatAParameterSetsToNull) {
+  const std::string text = R"({ "parameters": { "a": { "default": "items" }, "b": { "default": "items.n" } },
+    "nodes": { "items": { "type": "toy.count" }, "s": { "type": "toy.add", "in": { "a": "${a}", "b": "${b}" } } },
+    "outputs": { "y": "s" } })";
+  const auto wired = load(text), open = load(text, {"b=null"});
+  ASSERT_TRUE(wired && open) << diagnostics.str();
+  EXPECT_EQ(wired->nodes[1].inputs[1].sources.size(), 1u);
+  EXPECT_TRUE(open->nodes[1].inputs[1].sources.empty());
+  expect_error(text, "g.json:2:50", "node \"s\": input \"a\" (Number) is not wired", {"a=null"});
+}
+
 TEST_F(Load, SetsWhatStandsInGraphsUsedAsNodes) {
   write("inner.json", R"({ "parameters": { "k": { "default": 1 } },
     "nodes": { "c": { "type": "toy.constant", "params": { "x": "${k}" } }, "d": { "type": "toy.constant" },

@@ -14,12 +14,13 @@ TEST(Join, PutsColumnsSideBySideOverTheCommonLength) {
   b.values = Eigen::MatrixXd::Zero(4, 1);
   Eigen::MatrixXd expected(4, 3);
   expected << Eigen::MatrixXd::Ones(4, 2), Eigen::MatrixXd::Zero(4, 1);
-  EXPECT_EQ(Join{}(a, b).values, expected);
+  EXPECT_EQ(Join{}(a, &b).values, expected);
   b.values.resize(2, 1);
-  EXPECT_THROW(Join{}(a, b), std::runtime_error);
+  EXPECT_THROW(Join{}(a, &b), std::runtime_error);
   b.values.resize(5, 1);
   b.rate = Rational(50);
-  EXPECT_THROW(Join{}(a, b), std::runtime_error);
+  EXPECT_THROW(Join{}(a, &b), std::runtime_error);
+  EXPECT_EQ(Join{}(a, nullptr).values, a.values);
 }
 
 TEST(Stack, RepeatsTheEnds) {

@@ -9,7 +9,8 @@ namespace {
 TEST(Register, DescribesEveryNode) {
   Registry registry;
   register_sync(registry);
-  EXPECT_THAT(registry.names(), testing::ElementsAre("sync.frames", "sync.median", "sync.polyphase"));
+  EXPECT_THAT(registry.names(),
+              testing::ElementsAre("sync.direct", "sync.frames", "sync.median", "sync.polyphase", "sync.quadrature"));
 }
 
 }  // namespace

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include "nodes/sync/direct.h"
 #include "nodes/sync/frames.h"
 #include "nodes/sync/median.h"
 #include "nodes/sync/polyphase.h"
+#include "nodes/sync/quadrature.h"
 
 namespace talkgraph {
 namespace {
@@ -34,6 +37,9 @@ TEST(Sync, GivesTheFramesOfTheVideo) {
     const auto expected = static_cast<Eigen::Index>(std::ceil(2.98 * rate.value() - 1e-6));
     EXPECT_EQ((Polyphase{.rate = rate}(tone(1), &audio).frames()), expected);
     EXPECT_EQ(MedianSync{rate}(tone(1), &audio).frames(), expected);
+    if (rate.den() == 1) {
+      EXPECT_EQ(Quadrature{rate}(tone(1), &audio).frames(), expected);
+    }
     const Track frames = VideoFrames{rate}(audio);
     EXPECT_EQ(frames.frames(), expected);
     EXPECT_EQ(frames.dimension(), 0);
@@ -115,11 +121,77 @@ TEST(Polyphase, KeepsTheBandBelowTheCutoff) {
   }
 }
 
-TEST(Polyphase, SuppressesAliasesBy40dB) {
-  for (const double hz : {17.0, 22.0, 33.0, 45.0}) {
-    const Track t = Polyphase{}(tone(hz), nullptr);
-    EXPECT_LT(t.values.middleRows(10, t.frames() - 20).cwiseAbs().maxCoeff(), 0.01) << hz;
+// The largest value that a tone leaves, as a level under the tone's own.
+double level(const Track& t) { return 20 * std::log10(t.values.middleRows(20, t.frames() - 40).cwiseAbs().maxCoeff()); }
+
+TEST(Polyphase, SuppressesAliasesBy60dBFrom3HzAboveTheCutoff) {
+  for (double hz = 15.6; hz < 50; hz += 0.7) EXPECT_LT(level(Polyphase{}(tone(hz), nullptr)), -60) << hz;
+  for (double hz = 18.7; hz < 50; hz += 0.7) EXPECT_LT(level(Polyphase{.rate = ntsc}(tone(hz), nullptr)), -60) << hz;
+}
+
+TEST(Quadrature, SuppressesAliasesBy45dBFrom5HzAboveTheCutoff) {
+  for (double hz = 17; hz < 50; hz += 0.7) EXPECT_LT(level(Quadrature{}(tone(hz), nullptr)), -45) << hz;
+}
+
+TEST(Quadrature, KeepsAConstantAndTheBandWithoutDelay) {
+  Track constant = tone(1);
+  constant.values.setConstant(3.5);
+  EXPECT_LT((Quadrature{}(constant, nullptr).values.array() - 3.5).abs().maxCoeff(), 1e-12);
+  for (const double hz : {1.0, 4.0, 6.0, 8.0}) {
+    const Track out = Quadrature{}(tone(hz), nullptr);
+    for (Eigen::Index n = 20; n < out.frames() - 20; ++n)
+      EXPECT_NEAR(out.values(n, 0), std::sin(2 * std::numbers::pi * hz * out.time(n)), 0.01) << hz;
   }
+}
+
+// Forwards or backwards, the same comes out: no delay at any frequency.
+TEST(Sync, GivesTheSameBackwards) {
+  Track t = tone(1, 1001);
+  t.start = 0.005;
+  t.values.setRandom();
+  Track back = t;
+  back.values = t.values.colwise().reverse().eval();
+  const auto expect_same = [&](const auto& sync) {
+    const Eigen::MatrixXd there = sync(t, nullptr).values, again = sync(back, nullptr).values.colwise().reverse();
+    ASSERT_EQ(there.rows(), again.rows());
+    EXPECT_LT((there - again).cwiseAbs().maxCoeff(), 1e-11);
+  };
+  expect_same(Polyphase{.rate = ntsc});
+  expect_same(Polyphase{.rate = 200});
+  t.values.conservativeResize(1000, 1);
+  back.values = t.values.colwise().reverse().eval();
+  expect_same(Polyphase{});
+  expect_same(MedianSync{});
+}
+
+TEST(Median, IsTheMedianOfTheCentresInEachFrame) {
+  Track t = tone(1, 200);
+  t.values.setRandom();
+  for (const Rational rate : {Rational(25), ntsc, Rational(7), Rational(60), Rational(130)}) {
+    const Track out = MedianSync{rate}(t, nullptr);
+    for (Eigen::Index n = 0; n < out.frames(); ++n) {
+      std::vector<double> inside;
+      Eigen::Index nearest = 0;
+      const double fps = rate.value(), begin = static_cast<double>(n) / fps, end = static_cast<double>(n + 1) / fps;
+      for (Eigen::Index i = 0; i < t.frames(); ++i) {
+        if (t.time(i) >= begin - 1e-9 && t.time(i) < end - 1e-9) inside.push_back(t.values(i, 0));
+        if (std::abs(t.time(i) - out.time(n)) < std::abs(t.time(nearest) - out.time(n)) - 1e-9) nearest = i;
+      }
+      if (inside.empty()) inside.push_back(t.values(nearest, 0));
+      std::sort(inside.begin(), inside.end());
+      const auto half = inside.size() / 2;
+      const double median = inside.size() % 2 ? inside[half] : (inside[half - 1] + inside[half]) / 2;
+      ASSERT_EQ(out.values(n, 0), median) << rate.str() << " " << n;
+    }
+  }
+}
+
+TEST(Median, DoesNotDriftOverAnHour) {
+  Track line = tone(1, 1);
+  line.values = Eigen::VectorXd::LinSpaced(360000, 0, 359999);
+  const Track out = MedianSync{ntsc}(line, nullptr);
+  for (Eigen::Index n = 1; n < out.frames() - 1; n += 997)
+    EXPECT_NEAR(out.values(n, 0), (out.time(n) - line.start) * 100, 0.5 + 1e-6) << n;
 }
 
 TEST(Median, TakesTheMiddleOfEachVideoFrame) {
@@ -145,15 +217,49 @@ TEST(Median, TakesTheNearestWhereAFrameIsEmpty) {
   EXPECT_EQ(m.values(4, 0), 2);
 }
 
+Track at_video_rate(const Rational& rate, int frames) {
+  Track t = tone(1, frames);
+  t.rate = rate;
+  t.start = 0.5 / rate.value();
+  return t;
+}
+
+TEST(Direct, PassesOnWhatLiesOnTheFramesOfTheVideo) {
+  const Audio audio = seconds(3);
+  for (const Rational rate : {Rational(25), ntsc}) {
+    const auto frames = static_cast<int>(std::ceil(3 * rate.value()));
+    const Track in = at_video_rate(rate, frames);
+    EXPECT_EQ(DirectSync{rate}(in, &audio).values, in.values);
+    const Track longer = at_video_rate(rate, frames + 1), shorter = at_video_rate(rate, frames - 1);
+    EXPECT_EQ(DirectSync{rate}(longer, &audio).values, longer.values.topRows(frames));
+    const Track repeated = DirectSync{rate}(shorter, &audio);
+    ASSERT_EQ(repeated.frames(), frames);
+    EXPECT_EQ(repeated.values.topRows(frames - 1), shorter.values);
+    EXPECT_EQ(repeated.values.row(frames - 1), shorter.values.row(frames - 2));
+  }
+}
+
+TEST(Direct, RefusesAnotherRateGridOrLength) {
+  const Audio audio = seconds(3);
+  EXPECT_THROW(DirectSync{ntsc}(at_video_rate(25, 75), &audio), std::runtime_error);
+  Track early = at_video_rate(25, 75);
+  early.start = 0.0125;
+  EXPECT_THROW(DirectSync{}(early, &audio), std::runtime_error);
+  EXPECT_THROW(DirectSync{}(at_video_rate(25, 73), &audio), std::runtime_error);
+  EXPECT_THROW(DirectSync{}(Track{}, nullptr), std::runtime_error);
+}
+
 TEST(Sync, RefusesSoundOfAnotherUtterance) {
   const Audio audio = seconds(5);
   EXPECT_THROW(Polyphase{}(tone(1), &audio), std::runtime_error);
+  EXPECT_THROW(Quadrature{}(tone(1), &audio), std::runtime_error);
   EXPECT_THROW(MedianSync{}(tone(1), &audio), std::runtime_error);
 }
 
 TEST(Sync, AnswersForASingleFrame) {
   const Track one = tone(1, 1);
   EXPECT_NEAR(Polyphase{}(one, nullptr).values(0, 0), one.values(0, 0), 1e-14);
+  EXPECT_NEAR(Quadrature{}(one, nullptr).values(0, 0), one.values(0, 0), 1e-14);
   EXPECT_EQ(MedianSync{}(one, nullptr).values, one.values);
 }
 
@@ -164,6 +270,7 @@ TEST(Sync, RefusesEmptyAndBrokenTracks) {
   t = tone(1);
   t.values(3, 0) = NAN;
   EXPECT_THROW(Polyphase{}(t, nullptr), std::runtime_error);
+  EXPECT_THROW(Quadrature{}(t, nullptr), std::runtime_error);
 }
 
 }  // namespace
