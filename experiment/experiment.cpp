@@ -320,7 +320,8 @@ std::optional<Experiment> load_experiment(const std::filesystem::path& file, Dia
   if (!in || std::filesystem::is_directory(file))
     return diagnostics.error({}, fmt::format("{}: cannot be read", file.string())), std::nullopt;
   const auto text = std::make_shared<SourceText>(SourceText{file.string(), {std::istreambuf_iterator<char>(in), {}}});
-  const auto json = parse_json(text, diagnostics);
+  std::vector<std::string> open;
+  const auto json = detail::parse_extended(text, open, diagnostics);
   if (!json) return {};
   Experiment experiment = Reader(diagnostics).read(*json);
   experiment.name = file.stem().string();

@@ -38,7 +38,7 @@ Json experiment_schema() {
                          {"scale", {{"enum", {"linear", "log"}}, {"default", "linear"}}}},
                         {"from", "to", "count"});
   Json definitions = {
-      {"changes", object_of(true)},
+      {"changes", {{"type", {"object", "null"}}, {"description", "paths and values; null where it is taken away"}}},
       {"values",
        {{"anyOf",
          {list, object({{"path", path}, {"values", list}}, {"values"}), std::move(stepped), std::move(counted)}}}},
@@ -55,6 +55,7 @@ Json experiment_schema() {
   schema.update(object(
       {{"$schema", text("this schema")},
        {"description", text("what it is to find out")},
+       {"extends", text("an experiment that this one is laid over: members are merged, null takes one away")},
        {"graph", text("the graph file that is run")},
        {"set", {{"description", "changes that all runs have"}, {"allOf", {refer("changes")}}}},
        {"vary", object_of(refer("factor"))},
@@ -64,7 +65,8 @@ Json experiment_schema() {
        {"tabulate", names("outputs of the graph that are tables or scores")},
        {"plot", names("measures to plot; all if not given")},
        {"show", names("outputs with clips or pictures that the page shows beside each other")}},
-      {"graph", "tabulate"}));
+      {}));
+  schema["anyOf"] = {{{"required", {"graph", "tabulate"}}}, {{"required", {"extends"}}}};
   schema["definitions"] = std::move(definitions);
   return schema;
 }

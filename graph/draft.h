@@ -55,6 +55,11 @@ struct DeclaredInput {
 std::optional<DeclaredInput> declared_input(const LocatedJson& json, const Registry& registry,
                                             Diagnostics& diagnostics);
 
+/// A graph or an experiment; where it extends another file, that one with this one laid over it. `open` names the files
+/// that lead here, so that none extends itself.
+std::optional<LocatedJson> parse_extended(std::shared_ptr<const SourceText> text, std::vector<std::string>& open,
+                                          Diagnostics& diagnostics);
+
 /// Complain of members that are not allowed, or of what is no object.
 void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,
                 Diagnostics& diagnostics);

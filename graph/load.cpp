@@ -103,6 +103,20 @@ std::string nearby_graphs(const std::filesystem::path& file) {
   return did_you_mean(file.filename().string(), names);
 }
 
+std::shared_ptr<const SourceText> read_graph(const LocatedJson& file, Diagnostics& diagnostics) {
+  FilePath path;
+  if (!file.is(Kind::text)) {
+    diagnostics.error(file.place, fmt::format("a graph is named by its file, got {}", file.kind_name()));
+    return nullptr;
+  }
+  read_path(file, path, "graph", diagnostics);
+  auto text = read_text_file(path.path);
+  if (!text)
+    diagnostics.error(file.place,
+                      fmt::format("unknown graph: {} cannot be read{}", path.path, nearby_graphs(path.path)));
+  return text;
+}
+
 /// Lays a patch over a value (JSON merge patch, RFC 7396): members are merged, null takes one away, all else replaces.
 /// What is taken away must be there.
 void merge(LocatedJson& base, const LocatedJson& patch, const std::string& at, Diagnostics& diagnostics) {
@@ -118,7 +132,7 @@ void merge(LocatedJson& base, const LocatedJson& patch, const std::string& at, D
     } else if (there) {
       std::erase_if(base.members, [&](const auto& old) { return old.key == m.key; });
     } else if (m.value.is(Kind::null)) {
-      diagnostics.error(m.key_place, fmt::format("null takes \"{}\" away, but the extended graph has none{}", name,
+      diagnostics.error(m.key_place, fmt::format("null takes \"{}\" away, but what is extended has none{}", name,
                                                  did_you_mean(m.key, keys_of(base))));
     } else {
       base.members.push_back(m);
@@ -183,26 +197,6 @@ class Loader {
   Loader(const Registry& registry, Diagnostics& diagnostics) : registry_(registry), diagnostics_(diagnostics) {}
 
   Draft draft;
-
-  /// A graph's text; where it extends another graph, that one with this one laid over it.
-  std::optional<LocatedJson> parse_graph(std::shared_ptr<const SourceText> text) {
-    auto json = parse_json(text, diagnostics_);
-    auto* extends = json ? json->find("extends") : nullptr;
-    if (!extends) return json;
-    const auto base_text = read_graph(extends->value);
-    if (!base_text) return {};
-    if (std::find(open_stack_.begin(), open_stack_.end(), base_text->name) != open_stack_.end() ||
-        base_text->name == text->name)
-      return diagnostics_.error(extends->value.place, fmt::format("the graph {} extends itself", base_text->name)),
-             std::nullopt;
-    open_stack_.push_back(text->name);
-    auto base = parse_graph(base_text);
-    open_stack_.pop_back();
-    if (!base) return {};
-    std::erase_if(json->members, [](const auto& m) { return m.key == "extends"; });
-    merge(*base, *json, "", diagnostics_);
-    return base;
-  }
 
   /// Changes the root graph, or keeps the change until the graph is opened that holds its node.
   void change(LocatedJson& root, const Change& change) {
@@ -348,11 +342,11 @@ class Loader {
       if (named.is(Kind::text) &&
           (named.scalar.get<std::string>().empty() || named.scalar.get<std::string>()[0] == '{'))
         continue;
-      const auto text = read_graph(named);
+      const auto text = read_graph(named, diagnostics_);
       if (!text) continue;
       Loader loader(registry_, diagnostics_);
       loader.open_stack_ = open_stack_;
-      auto json = parse_graph(text);
+      auto json = parse_extended(text, open_stack_, diagnostics_);
       if (!json) continue;
       loader.open_root(*std::move(json), inner ? &inner->value : nullptr);
       if (const auto graph = connect(loader.draft, registry_, diagnostics_)) {
@@ -369,11 +363,11 @@ class Loader {
 
   void open_graph_node(Scope& scope, const LocatedJson::Member& member, Scope::Entry& entry, const LocatedJson& file,
                        const std::string& subject) {
-    const auto text = read_graph(file);
+    const auto text = read_graph(file, diagnostics_);
     if (!text) return;
     if (std::find(open_stack_.begin(), open_stack_.end(), text->name) != open_stack_.end())
       return diagnostics_.error(file.place, fmt::format("{}: the graph {} contains itself", subject, text->name));
-    auto json = parse_graph(text);
+    auto json = parse_extended(text, open_stack_, diagnostics_);
     if (!json) return;
     entry.graph = std::make_unique<Scope>();
     Scope& inner = *entry.graph;
@@ -405,20 +399,6 @@ class Loader {
       if (std::find(names.begin(), names.end(), m.key) == names.end())
         diagnostics_.error(m.key_place,
                            fmt::format("{}: unknown input \"{}\"{}", subject, m.key, did_you_mean(m.key, names)));
-  }
-
-  std::shared_ptr<const SourceText> read_graph(const LocatedJson& file) {
-    FilePath path;
-    if (!file.is(Kind::text)) {
-      diagnostics_.error(file.place, fmt::format("a graph is named by its file, got {}", file.kind_name()));
-      return nullptr;
-    }
-    read_path(file, path, "graph", diagnostics_);
-    auto text = read_text_file(path.path);
-    if (!text)
-      diagnostics_.error(file.place,
-                         fmt::format("unknown graph: {} cannot be read{}", path.path, nearby_graphs(path.path)));
-    return text;
   }
 
   /// A fragment by itself: its inputs stand as sources that cannot run.
@@ -479,6 +459,24 @@ std::optional<Change> parse_set(const std::string& set, Diagnostics& diagnostics
 
 }  // namespace
 
+std::optional<LocatedJson> parse_extended(std::shared_ptr<const SourceText> text, std::vector<std::string>& open,
+                                          Diagnostics& diagnostics) {
+  auto json = parse_json(text, diagnostics);
+  auto* extends = json ? json->find("extends") : nullptr;
+  if (!extends) return json;
+  const auto base_text = read_graph(extends->value, diagnostics);
+  if (!base_text) return {};
+  if (std::find(open.begin(), open.end(), base_text->name) != open.end() || base_text->name == text->name)
+    return diagnostics.error(extends->value.place, fmt::format("{} extends itself", base_text->name)), std::nullopt;
+  open.push_back(text->name);
+  auto base = parse_extended(base_text, open, diagnostics);
+  open.pop_back();
+  if (!base) return {};
+  std::erase_if(json->members, [](const auto& m) { return m.key == "extends"; });
+  merge(*base, *json, "", diagnostics);
+  return base;
+}
+
 void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,
                 Diagnostics& diagnostics) {
   for (const auto& m : json.members)
@@ -529,7 +527,8 @@ std::optional<Graph> load_graph_text(const std::string& name, const std::string&
                                      Diagnostics& diagnostics, const LoadOptions& options) {
   const auto source = std::make_shared<SourceText>(SourceText{name, text});
   detail::Loader loader(registry, diagnostics);
-  auto json = loader.parse_graph(source);
+  std::vector<std::string> open;
+  auto json = detail::parse_extended(source, open, diagnostics);
   if (!json) return {};
   for (const auto& set : options.sets)
     if (const auto change = detail::parse_set(set, diagnostics)) loader.change(*json, *change);

@@ -168,11 +168,16 @@ Json json_schema(const Registry& registry) {
                                                                   {"optional", {{"type", "boolean"}}},
                                                                   {"doc", text("what it is")}},
                                                                  {"type"})}}})},
-              {"nodes", object_of(refer("node"))},
-              {"outputs", object_of(refer("source"))},
+              {"nodes", {{"type", "object"}}},
+              {"outputs", {{"type", "object"}}},
               {"seed", {{"anyOf", {{{"type", "integer"}, {"minimum", 0}}, refer("parameter")}}, {"default", 1}}}},
              {}));
-  schema["anyOf"] = {{{"required", {"nodes"}}}, {{"required", {"extends"}}}};
+  // What is laid over another graph holds parts of nodes, and null for what it takes away.
+  schema["if"] = {{"required", {"extends"}}};
+  schema["then"]["properties"] = {{"nodes", object_of({{"type", {"object", "null"}}})},
+                                  {"outputs", object_of({{"type", {"string", "null"}}})}};
+  schema["else"] = {{"properties", {{"nodes", object_of(refer("node"))}, {"outputs", object_of(refer("source"))}}},
+                    {"required", {"nodes"}}};
   schema["definitions"] = std::move(definitions);
   return schema;
 }

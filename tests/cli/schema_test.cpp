@@ -85,6 +85,9 @@ TEST_F(Schema, FindsWhatIsWrong) {
   EXPECT_THAT(complaints_of(R"({ "nodes": { "m": { "type": "speech.mel", "in": { "spectrum": 3 } } } })"),
               HasSubstr("3"));
   EXPECT_THAT(complaints_of(R"({ "nodes": {}, "output": {} })"), HasSubstr("output"));
+  EXPECT_EQ(complaints_of(R"({ "extends": "g.json", "nodes": { "m": { "params": {} }, "n": null } })"), "");
+  EXPECT_THAT(complaints_of(R"({ "nodes": { "n": null } })"), HasSubstr("None"));
+  EXPECT_THAT(complaints_of(R"({ "outputs": {} })"), HasSubstr("'nodes' is a required property"));
 }
 
 TEST_F(Schema, OfExperimentsFindsWhatIsWrong) {

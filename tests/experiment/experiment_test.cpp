@@ -149,6 +149,21 @@ TEST_F(ExperimentFile, NeedsAGraphAndSomethingToTabulate) {
   EXPECT_THAT(missing.str(), HasSubstr("none.json: cannot be read"));
 }
 
+TEST_F(ExperimentFile, MayExtendAnother) {
+  folder_.write("base.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "plot": ["acc"], "set": { "nodes.a": 1 },
+    "vary": { "scale": [1, 2] } })");
+  const auto file = folder_.write("grid/more.json", R"({ "extends": "../base.json", "plot": null, "repeats": 2,
+    "set": { "nodes.b": 2 } })");
+  Diagnostics diagnostics;
+  const auto e = load_experiment(file, diagnostics);
+  ASSERT_TRUE(e) << diagnostics.str();
+  EXPECT_EQ(e->name, "more");
+  EXPECT_EQ(e->graph, folder_.file("graph.json"));
+  EXPECT_EQ(e->trials.size(), 4u);
+  EXPECT_EQ(e->trials[0].changes.size(), 4u);
+  EXPECT_TRUE(e->plot.empty());
+}
+
 TEST_F(ExperimentFile, EveryTrialIsCheckedAndAMistakeToldOnce) {
   const Registry registry = test::scored_registry();
   const auto complaint_of_trials = [&](const std::string& members) {

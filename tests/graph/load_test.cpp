@@ -246,7 +246,7 @@ TEST_F(Load, ExtendsInTurnsAndInFragments) {
 TEST_F(Load, SaysWhatIsWrongWithAnExtension) {
   write("base.json", R"({ "nodes": { "alpha": { "type": "toy.constant" } }, "outputs": { "n": "alpha" } })");
   expect_error(R"({ "extends": "base.json", "nodes": { "alhpa": null } })", "g.json:1:38",
-               "null takes \"nodes.alhpa\" away, but the extended graph has none (did you mean \"alpha\"?)");
+               "null takes \"nodes.alhpa\" away, but what is extended has none (did you mean \"alpha\"?)");
   expect_error(R"({ "extends": "bas.json" })", "g.json:1:14", "did you mean \"base.json\"?");
   expect_error(R"({ "extends": "g.json" })", "g.json:1:14", "");
   write("x.json", R"({ "extends": "y.json" })");
