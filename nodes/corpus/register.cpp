@@ -4,6 +4,7 @@
 #include "nodes/corpus/grid.h"
 #include "nodes/corpus/manifest.h"
 #include "nodes/corpus/parts.h"
+#include "nodes/corpus/pick.h"
 #include "nodes/corpus/select.h"
 #include "nodes/corpus/splits.h"
 
@@ -13,6 +14,7 @@ void register_corpus(Registry& registry) {
   registry.add<Grid>();
   registry.add<Manifest>();
   registry.add<SoundFiles>();
+  registry.add<Pick>();
   registry.add<Select>();
   registry.add<Splits>();
   registry.add<Parts>();

@@ -3,41 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <stdexcept>
 
-#include "nodes/plot/svg.h"
-#include "nodes/types/visemes.h"
+#include "nodes/plot/phone_averages.h"
 
 namespace talkgraph {
-namespace {
-
-constexpr int points = 21;
-
-/// Sums of stretched trajectories of one phone.
-struct Average {
-  int count = 0;
-  Eigen::ArrayXd truth = Eigen::ArrayXd::Zero(points), predicted = Eigen::ArrayXd::Zero(points);
-};
-
-/// Frames from..to read at evenly spaced places, linearly between frames.
-Eigen::ArrayXd stretched(const Eigen::VectorXd& x, double from, double to) {
-  Eigen::ArrayXd out(points);
-  for (int i = 0; i < points; ++i) {
-    const double at = std::clamp(from + (to - from) * i / (points - 1), 0.0, static_cast<double>(x.size() - 1));
-    const auto below = static_cast<Eigen::Index>(at);
-    const auto above = std::min<Eigen::Index>(below + 1, x.size() - 1);
-    out[i] = x[below] + (at - static_cast<double>(below)) * (x[above] - x[below]);
-  }
-  return out;
-}
-
-}  // namespace
 
 Plot MeanTrajectory::operator()(const Collected<Track>& truth, const Collected<Track>& predicted,
                                 const Collected<FrameLabels>& labels) const {
-  std::map<std::string, Average> averages;
+  PhoneAverages averages(margin);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const Track* p = predicted.find(truth.key(i));
     const FrameLabels* l = labels.find(truth.key(i));
@@ -50,35 +24,12 @@ Plot MeanTrajectory::operator()(const Collected<Track>& truth, const Collected<T
       throw std::runtime_error(truth.key(i) + ": " + std::to_string(truth[i].frames()) + " frames of truth, " +
                                std::to_string(p->frames()) + " of prediction and " + std::to_string(labelled) +
                                " labels");
-    const Eigen::VectorXd z = truth[i].values.col(dimension), q = p->values.col(dimension);
-    for (std::size_t start = 0, end = 0; start < l->labels.size(); start = end) {
-      while (end < l->labels.size() && l->labels[end] == l->labels[start]) ++end;
-      if (is_pause(l->labels[start])) continue;
-      auto& average = averages[l->labels[start]];
-      const double from = static_cast<double>(start) - margin, to = static_cast<double>(end) - 1 + margin;
-      ++average.count;
-      average.truth += stretched(z, from, to);
-      average.predicted += stretched(q, from, to);
-    }
+    averages.add(*l, {truth[i].values.col(dimension), p->values.col(dimension)});
   }
-  std::vector<std::pair<int, std::string>> order;
-  for (const auto& [phone, average] : averages) order.emplace_back(-average.count, phone);
-  std::sort(order.begin(), order.end());
-  order.resize(std::min<std::size_t>(order.size(), static_cast<std::size_t>(phones)));
-
   std::vector<Panel> panels;
-  std::vector<double> x(points);
-  for (int i = 0; i < points; ++i) x[static_cast<std::size_t>(i)] = static_cast<double>(i) / (points - 1);
-  for (const auto& [count, phone] : order) {
-    const auto& average = averages[phone];
-    const auto line = [&](const Eigen::ArrayXd& sum) {
-      const Eigen::ArrayXd mean = sum / average.count;
-      return std::vector<double>(mean.begin(), mean.end());
-    };
-    panels.push_back({phone + " (" + std::to_string(average.count) + ")",
-                      "time within the phone and its margin",
-                      "parameter " + std::to_string(dimension + 1),
-                      {{"truth", x, line(average.truth)}, {"prediction", x, line(average.predicted)}}});
+  for (const auto& phone : averages.most_frequent(phones)) {
+    panels.push_back(averages.panel(phone, {"truth", "prediction"}, false));
+    panels.back().y_label = "parameter " + std::to_string(dimension + 1);
   }
   return {title, draw_panels(title, panels)};
 }

@@ -1,7 +1,9 @@
 #include "nodes/plot/register.h"
 
 #include "nodes/plot/bars.h"
+#include "nodes/plot/columns.h"
 #include "nodes/plot/mean_trajectory.h"
+#include "nodes/plot/phone_means.h"
 #include "nodes/plot/tracks.h"
 #include "nodes/plot/trajectories.h"
 
@@ -9,7 +11,9 @@ namespace talkgraph {
 
 void register_plot(Registry& registry) {
   registry.add<MeanTrajectory>();
+  registry.add<PhoneMeans>();
   registry.add<PlotBars>();
+  registry.add<PlotColumns>();
   registry.add<PlotTracks>();
   registry.add<PlotTrajectories>();
 }

@@ -79,6 +79,19 @@ std::string whiskers_of(const Series& s, const Axis& x, const Axis& y, double w,
   return path;
 }
 
+/// The area between the spreads of neighbouring points.
+std::string band_of(const Series& s, const Axis& x, const Axis& y, double w, double h) {
+  std::string path;
+  const auto at = [&](std::size_t i, double side) {
+    return fmt::format("{:.1f} {:.1f}", x.share(s.x[i]) * w, h - y.share(s.y[i] + side * spread_at(s, i)) * h);
+  };
+  const auto there = [&](std::size_t i) { return std::isfinite(s.x[i]) && std::isfinite(s.y[i]); };
+  for (std::size_t i = 0; i + 1 < std::min(s.x.size(), s.y.size()); ++i)
+    if (there(i) && there(i + 1))
+      path += fmt::format("M{}L{}L{}L{}Z", at(i, 1), at(i + 1, 1), at(i + 1, -1), at(i, -1));
+  return path;
+}
+
 std::string draw_axes(const Panel& panel, const Axis& x, const Axis& y, double w, double h) {
   std::string out = text_at(w / 2, -10, "middle", panel.title, " font-weight=\"bold\"");
   for (const double v : y.ticks()) {
@@ -102,7 +115,11 @@ std::string draw_panel(const Panel& panel, const Layout& layout) {
   std::string out = draw_axes(panel, x, y, w, h);
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const char* colour = kColours[i % kColours.size()];
+    if (panel.series[i].band)
+      out += fmt::format("<path d=\"{}\" fill=\"{}\" fill-opacity=\"0.12\"/>\n", band_of(panel.series[i], x, y, w, h),
+                         colour);
     out += line(path_of(panel.series[i], x, y, w, h), colour, 1.6);
+    if (panel.series[i].band) continue;
     if (const auto whiskers = whiskers_of(panel.series[i], x, y, w, h); !whiskers.empty())
       out += line(whiskers, colour);
   }

@@ -10,6 +10,7 @@ struct Series {
   std::string name;
   std::vector<double> x, y;
   std::vector<double> spread = {};  ///< whiskers of ± this at each point; empty or NaN: none
+  bool band = false;                ///< the spread as a band, not as whiskers
 };
 
 /// A pair of axes with its lines.

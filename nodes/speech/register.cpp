@@ -1,6 +1,7 @@
 #include "nodes/speech/register.h"
 
 #include "nodes/speech/all_pole.h"
+#include "nodes/speech/average.h"
 #include "nodes/speech/bark.h"
 #include "nodes/speech/cepstrum.h"
 #include "nodes/speech/deltas.h"
@@ -20,6 +21,7 @@
 namespace talkgraph {
 
 void register_speech(Registry& registry) {
+  registry.add<Average>();
   registry.add<PreEmphasis>();
   registry.add<Frame>();
   registry.add<RemoveMean>();

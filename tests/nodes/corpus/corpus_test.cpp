@@ -8,6 +8,7 @@
 #include "nodes/corpus/manifest.h"
 #include "nodes/corpus/parts.h"
 #include "nodes/corpus/register.h"
+#include "nodes/corpus/pick.h"
 #include "nodes/corpus/select.h"
 #include "nodes/corpus/splits.h"
 #include "nodes/media/audio_file.h"
@@ -258,6 +259,14 @@ TEST(Select, TakesTheSplitsNamed) {
   EXPECT_TRUE(Select{}(recording));
   EXPECT_TRUE((Select{{"test", "train"}}(recording)));
   EXPECT_FALSE((Select{{"test"}}(recording)));
+}
+
+TEST(Pick, TakesTheRecordingsNamed) {
+  Recording recording;
+  recording.id = "b";
+  EXPECT_TRUE((Pick{{"a", "b"}}(recording)));
+  EXPECT_FALSE((Pick{{"a"}}(recording)));
+  EXPECT_FALSE(Pick{}(recording));
 }
 
 Collected<Recording> of_splits(const std::vector<std::string>& splits) {

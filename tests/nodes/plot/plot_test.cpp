@@ -5,7 +5,10 @@
 
 #include "nodes/plot/axis.h"
 #include "nodes/plot/bars.h"
+#include "nodes/plot/columns.h"
 #include "nodes/plot/mean_trajectory.h"
+#include "nodes/plot/phone_averages.h"
+#include "nodes/plot/phone_means.h"
 #include "nodes/plot/svg.h"
 #include "nodes/plot/tracks.h"
 #include "nodes/plot/trajectories.h"
@@ -105,6 +108,56 @@ TEST(MeanTrajectory, ShowsTheMostFrequentPhonesAndNoSilence) {
               HasSubstr("no parameter 3"));
   EXPECT_THAT(MeanTrajectory{}({}, {}, {}).svg, HasSubstr("</svg>"));
   EXPECT_THROW(MeanTrajectory{}({{"x", constant(8, 1)}}, {{"x", constant(5, 2)}}, {{"x", l}}), std::runtime_error);
+}
+
+TEST(Svg, DrawsASpreadAsABand) {
+  const Series s{"s", {0, 1}, {0, 0}, {1, 0}, true};
+  EXPECT_THAT(draw_panels("", {{"", "", "", {s}}}, {1, 268, 170}),
+              HasSubstr("M0.0 0.0L200.0 50.0L200.0 50.0L0.0 100.0Z"));
+}
+
+TEST(PhoneAverages, AreThoseOfAllOccurrencesWithTheirDeviation) {
+  FrameLabels l;
+  l.labels = {"sil", "sil", "aa", "aa", "b", "aa", "aa", "sil"};
+  PhoneAverages averages(0);
+  averages.add(l, {Eigen::VectorXd{{0, 0, 1, 3, 9, 5, 7, 0}}});
+  const Panel panel = averages.panel("aa", {"mine"}, true);
+  EXPECT_EQ(panel.title, "aa (2)");
+  ASSERT_EQ(panel.series.size(), 1u);
+  const Series& line = panel.series[0];  // the mean of 1 to 3 and 5 to 7
+  EXPECT_EQ(line.name, "mine");
+  EXPECT_DOUBLE_EQ(line.y.front(), 3);
+  EXPECT_DOUBLE_EQ(line.y.at(line.y.size() / 2), 4);
+  EXPECT_DOUBLE_EQ(line.y.back(), 5);
+  for (const double deviation : line.spread) EXPECT_NEAR(deviation, 2, 1e-12);
+  EXPECT_EQ(averages.panel("b", {"mine"}, true).series[0].y.front(), 9);
+  EXPECT_TRUE(averages.panel("zh", {"mine"}, true).series[0].y.empty());
+  EXPECT_EQ(averages.most_frequent(5), (std::vector<std::string>{"aa", "b"}));
+}
+
+TEST(PhoneMeans, TakesTheMostFrequentAndRefusesWhatDiffers) {
+  FrameLabels l;
+  l.labels = {"sil", "aa", "b", "aa", "sil", "d"};
+  const Plot p = PhoneMeans{.most = 2}({{"x", constant(6, 1)}, {"unlabelled", constant(3, 1)}}, {{"x", l}});
+  EXPECT_THAT(p.svg, HasSubstr("aa (2)"));
+  EXPECT_THAT(p.svg, HasSubstr("b (1)"));
+  EXPECT_THAT(p.svg, Not(HasSubstr("d (1)")));
+  EXPECT_THAT(PhoneMeans{}({}, {}).svg, HasSubstr("</svg>"));
+  EXPECT_THROW(PhoneMeans{}({{"x", constant(9, 1)}}, {{"x", l}}), std::runtime_error);
+  Track other = constant(6, 1);
+  other.names = {"a", "b"};
+  EXPECT_THROW(PhoneMeans{}({{"x", constant(6, 1)}, {"y", other}}, {{"x", l}, {"y", l}}), std::runtime_error);
+}
+
+TEST(PlotColumns, DrawsALineADimension) {
+  Track t = constant(5, 1);
+  t.names = {"one", "two"};
+  Context context;
+  context.item = "s001";
+  const Plot p = PlotColumns{"LSF"}(t, context);
+  EXPECT_EQ(p.title, "LSF, s001");
+  EXPECT_THAT(p.svg, HasSubstr(">one<"));
+  EXPECT_THAT(p.svg, HasSubstr(">two<"));
 }
 
 TEST(PlotTracks, ShowsNoMoreDimensionsThanThereAre) {

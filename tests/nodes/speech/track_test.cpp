@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "nodes/speech/average.h"
 #include "nodes/speech/deltas.h"
 #include "nodes/speech/join.h"
 #include "nodes/speech/one_hot.h"
@@ -21,6 +22,21 @@ TEST(Join, PutsColumnsSideBySideOverTheCommonLength) {
   b.rate = Rational(50);
   EXPECT_THROW(Join{}(a, &b), std::runtime_error);
   EXPECT_EQ(Join{}(a, nullptr).values, a.values);
+}
+
+TEST(Average, IsTheMeanOverTheDimensions) {
+  Track a;
+  a.values.resize(2, 3);
+  a.values << 1, 2, 6, -1, 0, 1;
+  a.start = 0.02;
+  a.lost = {1};
+  const Track mean = Average{"LSF"}(a);
+  EXPECT_EQ(mean.values, Eigen::Vector2d(3, 0));
+  EXPECT_EQ(mean.names, std::vector<std::string>{"LSF"});
+  EXPECT_EQ(mean.start, 0.02);
+  EXPECT_EQ(mean.lost, a.lost);
+  a.values.resize(2, 0);
+  EXPECT_THROW(Average{}(a), std::runtime_error);
 }
 
 TEST(Stack, RepeatsTheEnds) {

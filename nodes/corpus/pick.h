@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graph/description.h"
+#include "nodes/types/recording.h"
+
+namespace talkgraph {
+
+/// Lets the recordings of these names pass.
+struct Pick {
+  std::vector<std::string> ids;
+
+  std::optional<Recording> operator()(const Recording& recording) const;
+};
+void describe(Description<Pick>& d);
+
+}  // namespace talkgraph
