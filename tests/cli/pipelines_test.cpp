@@ -58,6 +58,33 @@ TEST(Pipelines, LoadAgainFromWhatARunFolderKeeps) {
   }
 }
 
+// Each choice of speech parameters is one setting for training, synthesis and the graph that the model speaks with.
+TEST(Pipelines, SpeakWithTheSpeechParametersOfTraining) {
+  const Registry registry = all_nodes();
+  const std::string fragments = TALKGRAPH_SOURCE_DIR "/pipelines/fragments/";
+  for (const char* name : {"demo.json", "grid-s1.json", "own.json"}) {
+    Diagnostics diagnostics;
+    const auto graph = load_graph(
+        TALKGRAPH_SOURCE_DIR "/pipelines/" + std::string(name), registry, diagnostics,
+        {{"nodes.face.params.speech=" + fragments + "speech-direct.json",
+          "nodes.face.params.features=" + fragments + "features/plp.json", "nodes.face.params.energy=null"}});
+    ASSERT_TRUE(graph) << diagnostics.str();
+    const Json& nodes = graph->resolved["nodes"];
+    const Json spoken = Json::parse(nodes["face/save"]["params"]["speak"].get<std::string>())["nodes"];
+    std::size_t same = 0;
+    for (const auto& [key, node] : spoken.items()) {
+      if (!key.starts_with("heard/speech/")) continue;
+      for (const std::string heard : {"train_", "held_"})
+        EXPECT_EQ(node["params"], nodes["face/" + heard + key]["params"]) << heard + key;
+      ++same;
+    }
+    EXPECT_EQ(spoken["heard/speech/synchronise"]["type"], "sync.direct");
+    EXPECT_TRUE(spoken.contains("heard/speech/features/loudness"));
+    EXPECT_FALSE(spoken.contains("heard/speech/energy"));
+    EXPECT_GT(same, 5u);
+  }
+}
+
 TEST(Pipelines, CanBeDrawn) {
   const Registry registry = all_nodes();
   for (const auto& file : pipelines()) {
