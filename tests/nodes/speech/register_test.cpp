@@ -11,10 +11,9 @@ TEST(Register, DescribesEveryNode) {
   register_speech(registry);
   EXPECT_THAT(
       registry.names(),
-      testing::ElementsAre("speech.all_pole", "speech.average", "speech.bark", "speech.cepstrum", "speech.deltas",
-                           "speech.energy", "speech.frame", "speech.frame_preemphasis", "speech.join",
-                           "speech.loudness", "speech.mel", "speech.one_hot", "speech.preemphasis", "speech.rasta",
-                           "speech.remove_mean", "speech.spectrum", "speech.stack", "speech.window"));
+  EXPECT_THAT(
+      registry.names(),
+      testing::ElementsAre("speech.all_pole", "speech.average", "speech.bark", "speech.cepstrum", "speech.deemphasis", "speech.deltas", "speech.energy", "speech.f0", "speech.frame", "speech.frame_preemphasis", "speech.from_lsf", "speech.join", "speech.loudness", "speech.lpc", "speech.lsf", "speech.mel", "speech.one_hot", "speech.preemphasis", "speech.rasta", "speech.reflection", "speech.remove_mean", "speech.residual", "speech.resynthesise", "speech.spectrum", "speech.stack", "speech.window"));
 }
 
 }  // namespace
