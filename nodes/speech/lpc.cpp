@@ -90,14 +90,15 @@ void burg(const Lpc& how, const Signal& x, LpcStep& step) {
 }  // namespace
 
 void linear_prediction(const Lpc& how, const Signal& frame, LpcStep& step) {
-  switch (how.method) {
-    case LpcMethod::autocorrelation:
-      return autocorrelation(how, frame, step);
-    case LpcMethod::covariance:
-      return covariance(how, frame, step);
-    case LpcMethod::burg:
-      return burg(how, frame, step);
-  }
+  if (step.weights.size() != frame.size()) step.weights = how.window.weights(frame.size());
+  step.weighed = frame.cwiseProduct(step.weights);
+  if (how.method == LpcMethod::autocorrelation)
+    autocorrelation(how, step.weighed, step);
+  else if (how.method == LpcMethod::covariance)
+    covariance(how, step.weighed, step);
+  else
+    burg(how, step.weighed, step);
+  step.power /= mean(step.weights.squaredNorm(), frame.size());
 }
 
 LpcTracks Lpc::operator()(const Frames& frames) const {
@@ -112,16 +113,18 @@ LpcTracks Lpc::operator()(const Frames& frames) const {
   for (Index t = 0; t < frames.values.rows(); ++t) {
     linear_prediction(*this, frames.values.row(t).transpose(), step);
     out.lpc.values.row(t) = step.a;
-    out.gain.values(t, 0) = std::sqrt(step.power / frames.weight);
+    out.gain.values(t, 0) = std::sqrt(step.power);
   }
   return out;
 }
 
 void describe(Description<Lpc>& d) {
   d.type("speech.lpc").summary("linear prediction of each frame, and its residual's level").source("Thesis §3.2");
-  d.input("frames", "T x samples; windowed for the autocorrelation method");
+  d.input("frames", "T x samples");
   d.output("lpc", &LpcTracks::lpc, "T x order: a_1 ... a_p of A(z) = 1 - Σ a_k z^-k");
   d.output("gain", &LpcTracks::gain, "T x 1: root mean square of the residual");
+  d.param("window", &Lpc::window)
+      .doc("what the frames are weighed with first; none by default, hamming suits autocorrelation");
   d.param("method", &Lpc::method)
       .doc("autocorrelation (Levinson-Durbin), covariance (may be unstable) or burg (the lattice)");
   d.param("order", &Lpc::order).within(1, 1000).doc("number of coefficients");

@@ -2,7 +2,7 @@
 
 #include "graph/description.h"
 #include "nodes/speech/levinson.h"
-#include "nodes/types/frames.h"
+#include "nodes/speech/window.h"
 #include "nodes/types/track.h"
 
 namespace talkgraph {
@@ -20,7 +20,7 @@ struct LpcTracks {
 
 /// Linear prediction of each frame, x[t] ≈ Σ a_k x[t-k], A(z) = 1 - Σ a_k z^-k (T × order).
 ///
-/// autocorrelation: frames as if zero outside, Levinson-Durbin; A is of minimum phase. Wants a window.
+/// autocorrelation: frames as if zero outside, Levinson-Durbin; A is of minimum phase. Wants a `window`.
 /// covariance: least squares over the samples that have `order` before them. A may have roots outside the unit circle.
 /// burg: the lattice whose forward and backward residuals are least; A is of minimum phase.
 ///
@@ -28,8 +28,9 @@ struct LpcTracks {
 /// ends early, the coefficients above are 0, where what is left to predict is rounding errors: in silence, constant
 /// frames, and by the covariance method in pure tones and frames of fewer than 2 · order samples.
 ///
-/// The gain is that of unweighed frames: the window's mean square is divided out. Thesis §3.2.
+/// The gain is that of unweighed frames: the mean square of `window` is divided out. Thesis §3.2.
 struct Lpc {
+  Window window{WindowShape::rectangular};
   LpcMethod method = LpcMethod::autocorrelation;
   int order = 20;
   double ridge = 0;
@@ -43,6 +44,7 @@ struct LpcStep {
   Eigen::VectorXd a;  ///< a_1 ... a_p
   double power = 0;   ///< mean square of the residual
 
+  Eigen::VectorXd weights, weighed;
   LinearPrediction levinson;
   Eigen::VectorXd products, forward, backward;
   Eigen::MatrixXd factor;

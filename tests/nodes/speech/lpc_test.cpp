@@ -151,7 +151,7 @@ TEST(Lpc, TheGainIsThatOfUnweighedFrames) {
   Frames frames;
   frames.values.resize(1, 20000);
   for (auto& x : frames.values.reshaped()) x = 0.1 * random.normal();
-  EXPECT_NEAR(Lpc{}(Window{}(frames)).gain.values(0, 0), 0.1, 0.002);
+  EXPECT_NEAR(Lpc{.window = {}}(frames).gain.values(0, 0), 0.1, 0.002);
 }
 
 TEST(Lpc, RidgeIsWhiteNoiseAdded) {
@@ -189,9 +189,8 @@ TEST(Lpc, EveryInputHasAFiniteAnswer) {
                                : kind == 6 ? (t == 100 ? 1e-300 : 0)
                                            : 1 + 1e-9 * sine;
           }
-          for (const bool windowed : {false, true}) {
-            const Frames frames = windowed ? Window{}(Frame{}(audio)) : Frame{}(audio);
-            const LpcTracks out = Lpc{.method = method, .order = order}(frames);
+          for (const auto shape : {WindowShape::rectangular, WindowShape::hamming}) {
+            const LpcTracks out = Lpc{.window = {shape}, .method = method, .order = order}(Frame{}(audio));
             ASSERT_TRUE(out.lpc.values.allFinite() && out.gain.values.allFinite());
             ASSERT_GE(out.gain.values.minCoeff(), 0);
             const Track lsf = Lsf{}(out.lpc, context), back = FromLsf{}(lsf);

@@ -15,7 +15,6 @@
 #include "nodes/speech/lsf.h"
 #include "nodes/speech/preemphasis.h"
 #include "nodes/speech/residual.h"
-#include "nodes/speech/window.h"
 
 namespace talkgraph {
 namespace {
@@ -55,7 +54,7 @@ struct Analysis {
 Analysis analysed(const Audio& audio, double rate = 100) {
   Context context;
   const auto fps = Rational(static_cast<std::int64_t>(rate));
-  const LpcTracks lpc = Lpc{}(Window{}(Frame{.rate = fps, .centred = true}(PreEmphasis{}(audio))));
+  const LpcTracks lpc = Lpc{.window = {}}(Frame{.rate = fps, .centred = true}(PreEmphasis{}(audio)));
   return {Lsf{}(lpc.lpc, context), lpc.gain, F0{}(Frame{.window = 0.04, .rate = fps, .centred = true}(audio))};
 }
 
