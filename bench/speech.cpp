@@ -37,14 +37,18 @@ void compare() {
       {"PLP", own([&] { test::plp(audio); })},
       {"PLP of Bark bands", own([&] { test::plp_bark(audio); })},
       {"RASTA-PLP", own([&] { test::rasta_plp(audio); })},
+      {"LPC", own([&] { test::lpc(audio); })},
+      {"LPC and LSF", own([&] { test::lsf(audio); })},
       {"DFTs alone, `cv::dft`", own(transforms_alone)},
   };
   const auto file = std::filesystem::temp_directory_path() / fmt::format("talkgraph-bench-{}.raw", getpid());
   write_floats(file, audio);
   const std::string frames = fmt::format("sptk frame -n -l 400 -p 160 {}", file.string());
   std::string missing;
-  for (const auto& [name, command] :
-       {std::pair<std::string, std::string>{"SPTK, MFCC", frames + " | sptk mfcc -l 400 -L 512 -m 20 -n 30 -c 1"}}) {
+  for (const auto& [name, command] : {
+           std::pair<std::string, std::string>{"SPTK, MFCC", frames + " | sptk mfcc -l 400 -L 512 -m 20 -n 30 -c 1"},
+           {"SPTK, LPC and LSF", frames + " | sptk window -l 400 -w 1 | sptk lpc -l 400 -m 20 | sptk lpc2lsp -m 20"},
+       }) {
     const auto peer = [command] { return child_cpu_time({"bash", "-o", "pipefail", "-c", command}); };
     try {
       peer();

@@ -44,7 +44,8 @@ class Features : public testing::TestWithParam<std::string> {
   /// What the nodes' own tests hold to its formulas.
   void expect_chain(const Track& track, const Frame& frame) {
     const std::map<std::string, Track (*)(const Audio&, const Frame&)> chains = {
-        {"mfcc", test::mfcc}, {"plp", test::plp}, {"plp-bark", test::plp_bark}, {"rasta-plp", test::rasta_plp}};
+        {"mfcc", test::mfcc}, {"plp", test::plp}, {"plp-bark", test::plp_bark},    {"rasta-plp", test::rasta_plp},
+        {"lpc", test::lpc},   {"lsf", test::lsf}, {"reflection", test::reflection}};
     const auto chain = chains.find(GetParam());
     if (chain != chains.end()) {
       EXPECT_EQ(track.values, chain->second(test::voice(1.3), frame).values);

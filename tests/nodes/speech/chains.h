@@ -5,6 +5,8 @@
 #include "nodes/speech/cepstrum.h"
 #include "nodes/speech/frame.h"
 #include "nodes/speech/loudness.h"
+#include "nodes/speech/lpc.h"
+#include "nodes/speech/lsf.h"
 #include "nodes/speech/mel.h"
 #include "nodes/speech/preemphasis.h"
 #include "nodes/speech/rasta.h"
@@ -34,6 +36,20 @@ inline Track plp_bark(const Audio& audio, const Frame& frame = {}) {
 inline Track rasta_plp(const Audio& audio, const Frame& frame = {}) {
   const auto [track, bands] = Bark{}(spectrum(audio, SpectrumKind::power, frame));
   return AllPole{}(Loudness{}(Rasta{}(track), bands));
+}
+
+inline Track lpc(const Audio& audio, const Frame& frame = {}) {
+  return Lpc{.window = {}}(frame(PreEmphasis{}(audio))).lpc;
+}
+
+inline Track lsf(const Audio& audio, const Frame& frame = {}) {
+  Context context;
+  return Lsf{}(lpc(audio, frame), context);
+}
+
+inline Track reflection(const Audio& audio, const Frame& frame = {}) {
+  Context context;
+  return Reflection{}(lpc(audio, frame), context);
 }
 
 }  // namespace talkgraph::test

@@ -86,7 +86,9 @@ TEST_P(HardInput, FramesDoNotDependOnWhatFollows) {
 
 INSTANTIATE_TEST_SUITE_P(Chains, HardInput,
                          testing::Values(Chain{"mfcc", test::mfcc}, Chain{"plp", test::plp},
-                                         Chain{"plp_bark", test::plp_bark}, Chain{"rasta_plp", test::rasta_plp}),
+                                         Chain{"plp_bark", test::plp_bark}, Chain{"rasta_plp", test::rasta_plp},
+                                         Chain{"lpc", test::lpc}, Chain{"lsf", test::lsf},
+                                         Chain{"reflection", test::reflection}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
