@@ -1,5 +1,6 @@
 #include "nodes/evaluate/register.h"
 
+#include "nodes/evaluate/alignment.h"
 #include "nodes/evaluate/compare.h"
 #include "nodes/evaluate/mouth_lag.h"
 #include "nodes/evaluate/mouth_opening.h"
@@ -11,6 +12,7 @@
 namespace talkgraph {
 
 void register_evaluate(Registry& registry) {
+  registry.add<ScoreAlignment>();
   registry.add<Compare>();
   registry.add<MouthLag>();
   registry.add<MouthOpening>();

@@ -6,6 +6,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "nodes/media/audio_file.h"
+#include "nodes/phones/boundaries.h"
 #include "nodes/phones/decoder_pool.h"
 #include "nodes/phones/pocketsphinx.h"
 #include "nodes/phones/sound.h"
@@ -38,101 +40,147 @@ void learn_missing(SphinxAligner& aligner, const Words& words) {
   }
 }
 
-std::vector<FrameSpan> without_fillers(std::vector<FrameSpan> words) {
-  std::erase_if(words, is_filler);
-  return words;
-}
-
 std::string quote(std::span<const std::string> words) {
   std::string text;
   for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
   return '"' + text + '"';
 }
 
-/// A run of words and how unlike the sound it is, as a distance per frame.
+/// A run of words and pauses of three seconds, or of all where that is shorter, and how unlike the
+/// sound it is, as a distance per frame.
 struct Stretch {
-  std::size_t first = 0;
-  std::size_t count = 0;
+  std::span<const FrameSpan> spans;
   double distance = 0;
+
+  int start() const { return spans.front().start; }
+  int end() const { return spans.back().end; }
 };
 
-/// The least likely run of words that together last three seconds, or the whole
-/// where that is shorter.
-Stretch worst_stretch(const std::vector<FrameSpan>& words) {
-  constexpr int kFrames = 300;
-  Stretch worst;
-  for (std::size_t first = 0; first < words.size(); ++first) {
-    int frames = 0;
-    double score = 0;
-    std::size_t end = first;
-    for (; end < words.size() && frames < kFrames; ++end) {
-      frames += words[end].end - words[end].start;
-      score += words[end].score * (words[end].end - words[end].start);
-    }
-    if (frames < kFrames && first > 0) break;
-    if (first == 0 || -score / frames > worst.distance) worst = {first, end - first, -score / frames};
-  }
-  return worst;
+double distance(std::span<const FrameSpan> spans) {
+  double sum = 0;
+  for (const auto& span : spans) sum -= span.score * (span.end - span.start);
+  return sum / (spans.back().end - spans.front().start);
 }
 
-void check_fit(const SphinxAligner::Result& result, const Words& words, double mismatch) {
-  const auto found = without_fillers(result.words);
-  if (result.phones.empty()) {
-    const std::size_t reached = std::min(found.size(), words.size() - 1);
-    throw std::runtime_error(fmt::format(
-        "phones.align: the {} words of the transcript do not fit into the sound: it ends in word {}, {}; check "
-        "that transcript and sound belong together",
-        words.size(), reached + 1, quote(std::span(words).subspan(reached, 1))));
+std::optional<Stretch> stretch_from(std::span<const FrameSpan> spans, std::size_t first) {
+  constexpr int kFrames = 300;
+  std::size_t end = first + 1;
+  while (end < spans.size() && spans[end - 1].end - spans[first].start < kFrames) ++end;
+  if (first > 0 && spans[end - 1].end - spans[first].start < kFrames) return {};
+  const auto run = spans.subspan(first, end - first);
+  return Stretch{run, distance(run)};
+}
+
+/// How much further the words are from the sound than the likeliest phones.
+double excess(const Stretch& stretch, std::span<const std::int16_t> sound) {
+  const auto first = static_cast<std::size_t>(stretch.start()) * kSphinxHop;
+  const auto length = static_cast<std::size_t>(stretch.end() - stretch.start()) * kSphinxHop;
+  const auto part = sound.subspan(first, std::min(length, sound.size() - first));
+  const auto phones = decoder_pool<SphinxPhoneLoop>().take()->decode(part);
+  return phones.empty() ? 0 : stretch.distance - distance(phones);
+}
+
+/// The first stretch that is by more than `mismatch` further from its sound than the likeliest
+/// phones; nothing where the words fit.
+std::optional<Stretch> unlike(std::span<const FrameSpan> spans, std::span<const std::int16_t> sound, double mismatch) {
+  int fits_until = 0;
+  for (std::size_t first = 0; first < spans.size(); ++first) {
+    if (spans[first].start < fits_until) continue;
+    auto stretch = stretch_from(spans, first);
+    if (!stretch) break;
+    if (stretch->distance <= mismatch) continue;
+    stretch->distance = excess(*stretch, sound);
+    if (stretch->distance > mismatch) return stretch;
+    fits_until = (stretch->start() + stretch->end()) / 2;
   }
-  const Stretch worst = worst_stretch(found);
-  if (worst.distance <= mismatch) return;
-  throw std::runtime_error(
-      fmt::format("phones.align: the transcript does not match the sound: {} from {:.2f} s to {:.2f} s is unlike what "
-                  "is said there "
-                  "(distance {:.0f} per frame, at most {:g} is taken); correct the transcript, or leave it out to have "
-                  "the phones recognised",
-                  quote(std::span(words).subspan(worst.first, worst.count)), sphinx_boundary(found[worst.first].start),
-                  sphinx_boundary(found[worst.first + worst.count - 1].end), worst.distance, mismatch));
+  return {};
+}
+
+Words spoken(std::span<const FrameSpan> spans) {
+  Words words;
+  for (const auto& span : spans)
+    if (!is_filler(span)) words.push_back(span.label.substr(0, span.label.find('(')));
+  return words;
+}
+
+void check_fit(const SphinxAligner::Result& result, const Words& words, std::span<const std::int16_t> sound,
+               double mismatch) {
+  if (result.phones.empty()) {
+    const std::size_t reached = std::min(spoken(result.words).size(), words.size() - 1);
+    const double at = result.words.empty() ? 0 : sphinx_boundary(result.words.back().start);
+    throw std::runtime_error(fmt::format(
+        "phones.align: the {} words of the transcript do not fit into the sound: it ends in word {}, {}, at {:.2f} s; "
+        "check that transcript and sound belong together",
+        words.size(), reached + 1, quote(std::span(words).subspan(reached, 1)), at));
+  }
+  const auto stretch = unlike(result.words, sound, mismatch);
+  if (!stretch) return;
+  const Words said = spoken(stretch->spans);
+  throw std::runtime_error(fmt::format(
+      "phones.align: the transcript does not match the sound: {} from {:.2f} s to {:.2f} s is unlike what is said "
+      "there "
+      "(by {:.0f} a frame less likely than other phones, at most {:g} is taken); correct the transcript, or leave it "
+      "out to have the phones recognised",
+      said.empty() ? "a pause" : quote(said), sphinx_boundary(stretch->start()), sphinx_boundary(stretch->end()),
+      stretch->distance, mismatch));
+}
+
+/// The words between the phones that they begin with.
+WordTrack word_track(const SphinxAligner::Result& result, const std::vector<double>& starts, double seconds) {
+  WordTrack track;
+  std::size_t phone = 0;
+  for (const auto& word : result.words) {
+    const double start = starts[phone];
+    while (phone < starts.size() && result.phones[phone].start < word.end) ++phone;
+    const double end = phone < starts.size() ? starts[phone] : seconds;
+    if (end <= start) continue;
+    const bool pause = is_filler(word);
+    if (pause && !track.words.empty() && track.words.back().label == "sil")
+      track.words.back().end = end;
+    else
+      track.words.push_back({pause ? "sil" : spoken({&word, 1}).front(), start, end});
+  }
+  return track;
 }
 
 }  // namespace
 
-std::optional<PhoneTrack> Align::operator()(const Audio& audio, const Transcript* transcript, const WordTrack* track,
-                                            const PhoneTrack* given) const {
-  if (given) return *given;
+std::optional<Alignment> Align::operator()(const Audio& audio, const Transcript* transcript, const WordTrack* track,
+                                           const PhoneTrack* given) const {
+  if (given) return Alignment{*given, track ? *track : WordTrack{}};
   if (!transcript && !track) return {};
   const Words words = known_words(transcript, track);
   if (words.empty() && transcript)
     throw std::runtime_error("phones.align: the transcript holds no word; leave it out to have the phones recognised");
-  if (words.empty()) return all_silence(audio);
+  if (words.empty()) return Alignment{all_silence(audio), {all_silence(audio).phones}};
   if (is_blank(audio))
     throw std::runtime_error(
         fmt::format("phones.align: there is no sound for {}: the recording, {:.2f} s, is silent; check that transcript "
                     "and sound belong together",
                     quote(words), audio.seconds()));
 
-  if (audio.seconds() > kLongest)
-    throw std::runtime_error(fmt::format(
-        "phones.align: the sound lasts {:.0f} s, PocketSphinx takes at most {:.0f} s at once; cut it at a pause",
-        audio.seconds(), kLongest));
+  const Audio sound = resampled(audio, kSphinxRate);
   const auto aligner = decoder_pool<SphinxAligner>().take();
   learn_missing(*aligner, words);
-  const auto result = aligner->align(sphinx_samples(audio), words);
-  check_fit(result, words, mismatch);
-  return phone_track(result.phones, audio.seconds());
+  const auto samples = sphinx_samples(sound);
+  const auto result = aligner->align(samples, words);
+  check_fit(result, words, samples, mismatch);
+  const auto starts = phone_starts(result.phones, sound);
+  return Alignment{phone_track(result.phones, starts, audio.seconds()), word_track(result, starts, audio.seconds())};
 }
 
 void describe(Description<Align>& d) {
-  d.type("phones.align").summary("times of the phones of known words, by forced alignment").stored();
+  d.type("phones.align").version(2).summary("times of the phones of known words, by forced alignment").stored();
   d.source("PocketSphinx 0.8+5prealpha with its en-us model");
   d.input("audio", "the speech").input("transcript", "what is said").input("words", "instead of a transcript");
   d.input("given", "phones from the corpus, passed on");
-  d.output("phones", "nothing where neither words nor phones are known");
+  d.output("phones", &Alignment::phones, "nothing where neither words nor phones are known");
+  d.output("words", &Alignment::words, "the words as they are spoken");
   d.param("mismatch", &Align::mismatch)
       .positive()
       .doc(
-          "how unlike its words a second of speech may be before the transcript counts as wrong: about 20 for a right "
-          "transcript, 50 to 80 for another one");
+          "by how much the words of three seconds may be less likely than the likeliest phones, as a log likelihood a "
+          "frame, before the transcript counts as wrong: 5 to 24 for a right transcript, 27 to 60 for another one");
 }
 
 }  // namespace talkgraph

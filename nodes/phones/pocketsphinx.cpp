@@ -148,8 +148,8 @@ std::vector<FrameSpan> segments(ps_decoder_t* ps) {
 }
 
 /// Searches the sound: the spans of the best complete path, and if there is none
-/// those of the best one so far.
-std::vector<FrameSpan> search(ps_decoder_t* ps, std::span<const std::int16_t> sound) {
+/// or the sound goes on (`open`) those of the best one so far.
+std::vector<FrameSpan> run_search(ps_decoder_t* ps, std::span<const std::int16_t> sound, bool open) {
   // A new stream forgets the noise level of earlier sound.
   if (ps_start_stream(ps) < 0 || ps_start_utt(ps) < 0)
     throw std::runtime_error("phones: PocketSphinx cannot start an utterance");
@@ -157,10 +157,8 @@ std::vector<FrameSpan> search(ps_decoder_t* ps, std::span<const std::int16_t> so
   std::vector<FrameSpan> so_far = segments(ps);
   if (ps_end_utt(ps) < 0 || searched < 0) throw std::runtime_error("phones: PocketSphinx failed on the sound");
   std::vector<FrameSpan> complete = segments(ps);
-  return complete.empty() ? so_far : complete;
+  return complete.empty() || open ? so_far : complete;
 }
-
-constexpr int kHop = 160;  // samples
 
 /// A part of an utterance for the state aligner, whose time and memory grow
 /// with the square of the length.
@@ -191,26 +189,67 @@ std::vector<Piece> pieces(const std::vector<FrameSpan>& words) {
   return all;
 }
 
+/// Long sound is searched in windows of this length, in frames: PocketSphinx counts frames in 16 bits.
+constexpr int kWindow = 6000;
+/// Words that nobody says within a window.
+constexpr std::size_t kMostWords = 600;
+
+/// The window that begins at a frame, and whether the sound goes on beyond it.
+std::pair<std::span<const std::int16_t>, bool> window_from(std::span<const std::int16_t> sound, int start) {
+  const auto rest = sound.subspan(static_cast<std::size_t>(start) * kSphinxHop);
+  const auto window = rest.first(std::min<std::size_t>(rest.size(), std::size_t{kWindow} * kSphinxHop));
+  return {window, window.size() < rest.size()};
+}
+
+/// Where a window that is not the last may end: in the middle of its last pause that
+/// has 5 s of the window behind it, which show that the words go on from there; without
+/// a pause, before the last span that has 10 s behind it.
+int last_anchor(const std::vector<FrameSpan>& spans) {
+  constexpr int kPause = 20, kBehind = 500, kFarBehind = 1000;
+  int pause = 0, boundary = 0;
+  for (const auto& span : spans) {
+    const int middle = (span.start + span.end) / 2;
+    if (is_filler(span) && span.end - span.start >= kPause && middle <= kWindow - kBehind) pause = middle;
+    if (span.start <= kWindow - kFarBehind) boundary = span.start;
+  }
+  return pause > kWindow / 4 ? pause : boundary;
+}
+
+/// Appends the spans that start before `end`, later by `shift`; the last ends there.
+void append_until(int end, int shift, std::vector<FrameSpan> spans, std::vector<FrameSpan>& all) {
+  for (auto& span : spans) {
+    if (span.start >= end) break;
+    all.push_back({std::move(span.label), span.start + shift, std::min(span.end, end) + shift, span.score});
+  }
+}
+
 }  // namespace
 
-bool is_filler(const FrameSpan& word) { return word.label.starts_with('<') || word.label.starts_with('['); }
-
-double sphinx_boundary(int frame) { return 0.010 * frame + 0.0078; }
+bool is_filler(const FrameSpan& span) {
+  return span.label.starts_with('<') || span.label.starts_with('[') || span.label.starts_with('+') ||
+         span.label == "SIL";
+}
 
 struct SphinxAligner::Decoder {
-  DecoderPtr ps;
+  DecoderPtr search;  ///< finds the words; it evaluates every second frame, which takes half the time
+  DecoderPtr states;  ///< aligns the states of words that were found
 
+  /// The words in the sound with pauses, in their order; fewer where they do not fit.
+  std::vector<FrameSpan> find(std::span<const std::int16_t> sound, std::span<const std::string> words) const;
+  /// The same in sound of at most a window: of words that go on beyond it (`open`) those that it holds.
+  std::vector<FrameSpan> find_in_window(std::span<const std::int16_t> sound, std::span<const std::string> words,
+                                        bool open) const;
   /// Makes the features of the sound and says of how many frames.
   int features(std::span<const std::int16_t> sound) const;
-  /// Phone times of words that are known to be in the sound, by Viterbi over their
-  /// states; empty if the words do not fit.
-  std::vector<FrameSpan> align_states(std::span<const std::int16_t> sound, std::span<const FrameSpan> words) const;
+  /// Phones of words that are known to be in the sound, by Viterbi over their states, and
+  /// the words' times and scores; empty if the words do not fit.
+  std::vector<FrameSpan> align_states(std::span<const std::int16_t> sound, std::vector<FrameSpan>& words) const;
   void check_layout() const;
 };
 
 void SphinxAligner::Decoder::check_layout() const {
-  const DecoderHead& d = head(ps.get());
-  const bool decoder_fits = d.config == ps_get_config(ps.get()) && d.lmath == ps_get_logmath(ps.get()) &&
+  const DecoderHead& d = head(states.get());
+  const bool decoder_fits = d.config == ps_get_config(states.get()) && d.lmath == ps_get_logmath(states.get()) &&
                             d.refcount == 1 && d.acmod && d.dict && d.d2p;
   bool search_fits = false;
   if (decoder_fits) {
@@ -232,10 +271,10 @@ void SphinxAligner::Decoder::check_layout() const {
 }
 
 int SphinxAligner::Decoder::features(std::span<const std::int16_t> sound) const {
-  acmod_s* acmod = head(ps.get()).acmod;
+  acmod_s* acmod = head(states.get()).acmod;
   const std::int16_t* samples = sound.data();
   std::size_t count = sound.size();
-  if (ps_start_stream(ps.get()) < 0 || acmod_start_utt(acmod) < 0)
+  if (ps_start_stream(states.get()) < 0 || acmod_start_utt(acmod) < 0)
     throw std::runtime_error("phones.align: PocketSphinx cannot start an utterance");
   const int frames = acmod_process_raw(acmod, &samples, &count, TRUE);
   if (frames < 0 || acmod_end_utt(acmod) < 0)
@@ -244,8 +283,8 @@ int SphinxAligner::Decoder::features(std::span<const std::int16_t> sound) const 
 }
 
 std::vector<FrameSpan> SphinxAligner::Decoder::align_states(std::span<const std::int16_t> sound,
-                                                            std::span<const FrameSpan> words) const {
-  const DecoderHead& d = head(ps.get());
+                                                            std::vector<FrameSpan>& words) const {
+  const DecoderHead& d = head(states.get());
   const std::unique_ptr<ps_alignment_s, FreeAlignment> alignment(ps_alignment_init(d.d2p));
   std::vector<int32> ids;
   for (const auto& word : words) {
@@ -272,54 +311,91 @@ std::vector<FrameSpan> SphinxAligner::Decoder::align_states(std::span<const std:
     const ps_alignment_entry_s& e = *ps_alignment_iter_get(it);
     position = e.parent == word ? position + 1 : 0;
     word = e.parent;
-    phones.push_back({dict_ciphone_str(d.dict, ids[word], position), e.start, e.start + e.duration, 0});
+    const int end = e.start + e.duration;
+    phones.push_back(
+        {dict_ciphone_str(d.dict, ids[word], position), e.start, end, static_cast<double>(e.score) / e.duration});
+    FrameSpan& whole = words[static_cast<std::size_t>(word)];
+    if (position == 0) whole = {std::move(whole.label), e.start, end, 0};
+    whole.end = end;
+    whole.score += e.score;
   }
+  for (auto& w : words) w.score /= w.end - w.start;
   return phones;
 }
 
 SphinxAligner::SphinxAligner() : decoder_(std::make_unique<Decoder>()) {
-  decoder_->ps = make_decoder({"-dict", kModel / "cmudict-en-us.dict", "-fsgusefiller", "yes", "-fsgusealtpron", "yes",
-                               "-beam", "1e-300", "-wbeam", "1e-300", "-pbeam", "1e-300"});
+  const std::string dictionary = kModel / "cmudict-en-us.dict";
+  decoder_->search = make_decoder({"-dict", dictionary, "-fsgusefiller", "yes", "-fsgusealtpron", "yes", "-ds", "2",
+                                   "-beam", "1e-300", "-wbeam", "1e-300", "-pbeam", "1e-300"});
+  decoder_->states = make_decoder({"-dict", dictionary, "-topn", "8"});
   decoder_->check_layout();
 }
 SphinxAligner::~SphinxAligner() = default;
 
 bool SphinxAligner::knows(const std::string& word) const {
-  return dict_wordid(head(decoder_->ps.get()).dict, word.c_str()) >= 0;
+  return dict_wordid(head(decoder_->states.get()).dict, word.c_str()) >= 0;
 }
 
 void SphinxAligner::learn(const std::string& word, const std::vector<std::string>& phones) {
   std::string spelling;
   for (const auto& phone : phones) spelling += (spelling.empty() ? "" : " ") + phone;
   for (char& c : spelling) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  if (phones.empty() || ps_add_word(decoder_->ps.get(), word.c_str(), spelling.c_str(), FALSE) < 0)
-    throw std::runtime_error("phones.align: the pronunciation \"" + spelling + "\" of \"" + word +
-                             "\" has phones that the model does not know");
+  for (const auto& ps : {decoder_->search.get(), decoder_->states.get()})
+    if (phones.empty() || ps_add_word(ps, word.c_str(), spelling.c_str(), FALSE) < 0)
+      throw std::runtime_error("phones.align: the pronunciation \"" + spelling + "\" of \"" + word +
+                               "\" has phones that the model does not know");
+}
+
+std::vector<FrameSpan> SphinxAligner::Decoder::find_in_window(std::span<const std::int16_t> sound,
+                                                              std::span<const std::string> words, bool open) const {
+  ps_decoder_t* ps = search.get();
+  const int nodes = static_cast<int>(words.size()) + 1;
+  const std::unique_ptr<fsg_model_t, FreeGrammar> grammar(fsg_model_init(
+      "words", ps_get_logmath(ps), static_cast<float32>(cmd_ln_float_r(ps_get_config(ps), "-lw")), nodes));
+  grammar->start_state = 0;
+  grammar->final_state = nodes - 1;
+  for (int i = 0; i + 1 < nodes; ++i)
+    fsg_model_trans_add(grammar.get(), i, i + 1, 0,
+                        fsg_model_word_add(grammar.get(), words[static_cast<std::size_t>(i)].c_str()));
+  if (ps_set_fsg(ps, "words", grammar.get()) < 0 || ps_set_search(ps, "words") < 0)
+    throw std::runtime_error("phones.align: PocketSphinx does not take the words");
+  return run_search(ps, sound, open);
+}
+
+std::vector<FrameSpan> SphinxAligner::Decoder::find(std::span<const std::int16_t> sound,
+                                                    std::span<const std::string> words) const {
+  std::vector<FrameSpan> found;
+  for (int start = 0;;) {
+    const auto [window, open] = window_from(sound, start);
+    auto spans = words.empty() ? std::vector<FrameSpan>{{"<sil>", 0, static_cast<int>(window.size() / kSphinxHop), 0}}
+                               : find_in_window(window, words.first(std::min(words.size(), kMostWords)), open);
+    const int end = open ? last_anchor(spans) : kWindow;
+    const std::size_t before = found.size();
+    append_until(end, start, std::move(spans), found);
+    if (!open || end == 0) return found;
+    words = words.subspan(
+        static_cast<std::size_t>(std::count_if(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(),
+                                               [](const auto& span) { return !is_filler(span); })));
+    start += end;
+  }
 }
 
 SphinxAligner::Result SphinxAligner::align(std::span<const std::int16_t> sound, const std::vector<std::string>& words) {
-  ps_decoder_t* ps = decoder_->ps.get();
-  const int states = static_cast<int>(words.size()) + 1;
-  const std::unique_ptr<fsg_model_t, FreeGrammar> grammar(fsg_model_init(
-      "words", ps_get_logmath(ps), static_cast<float32>(cmd_ln_float_r(ps_get_config(ps), "-lw")), states));
-  grammar->start_state = 0;
-  grammar->final_state = states - 1;
-  for (int i = 0; i + 1 < states; ++i)
-    fsg_model_trans_add(grammar.get(), i, i + 1, 0, fsg_model_word_add(grammar.get(), words[i].c_str()));
-  if (ps_set_fsg(ps, "words", grammar.get()) < 0 || ps_set_search(ps, "words") < 0)
-    throw std::runtime_error("phones.align: PocketSphinx does not take the words");
-
-  Result result{search(ps, sound), {}};
-  const auto spoken =
-      std::count_if(result.words.begin(), result.words.end(), [](const auto& w) { return !is_filler(w); });
-  if (static_cast<std::size_t>(spoken) != words.size()) return result;
-  for (const Piece& piece : pieces(result.words)) {
-    const std::size_t first = static_cast<std::size_t>(piece.start) * kHop;
-    const std::size_t last = piece.end == result.words.back().end ? sound.size() : std::size_t(piece.end) * kHop;
+  const auto found = decoder_->find(sound, words);
+  const auto spoken = std::count_if(found.begin(), found.end(), [](const auto& w) { return !is_filler(w); });
+  if (static_cast<std::size_t>(spoken) != words.size()) return {found, {}};
+  Result result;
+  const auto append = [](const std::vector<FrameSpan>& spans, int shift, std::vector<FrameSpan>& all) {
+    for (const auto& span : spans) all.push_back({span.label, span.start + shift, span.end + shift, span.score});
+  };
+  for (Piece& piece : pieces(found)) {
+    const std::size_t first = static_cast<std::size_t>(piece.start) * kSphinxHop;
+    const std::size_t last =
+        piece.end == found.back().end ? sound.size() : static_cast<std::size_t>(piece.end) * kSphinxHop;
     const auto phones = decoder_->align_states(sound.subspan(first, last - first), piece.words);
-    if (phones.empty()) return {std::move(result.words), {}};
-    for (const auto& phone : phones)
-      result.phones.push_back({phone.label, phone.start + piece.start, phone.end + piece.start, 0});
+    if (phones.empty()) return {found, {}};
+    append(piece.words, piece.start, result.words);
+    append(phones, piece.start, result.phones);
   }
   return result;
 }
@@ -335,7 +411,15 @@ SphinxPhoneLoop::SphinxPhoneLoop() : decoder_(std::make_unique<Decoder>()) {
 SphinxPhoneLoop::~SphinxPhoneLoop() = default;
 
 std::vector<FrameSpan> SphinxPhoneLoop::decode(std::span<const std::int16_t> sound) {
-  return search(decoder_->ps.get(), sound);
+  std::vector<FrameSpan> found;
+  for (int start = 0;;) {
+    const auto [window, open] = window_from(sound, start);
+    auto spans = run_search(decoder_->ps.get(), window, open);
+    const int end = open ? last_anchor(spans) : kWindow;
+    append_until(end, start, std::move(spans), found);
+    if (!open || end == 0) return found;
+    start += end;
+  }
 }
 
 }  // namespace talkgraph

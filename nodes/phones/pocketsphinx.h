@@ -18,12 +18,13 @@ struct FrameSpan {
 
 /// Samples are taken at this rate, 16 bits.
 inline constexpr double kSphinxRate = 16000;
+inline constexpr int kSphinxHop = 160;  ///< samples from frame to frame
 
-/// Whether a word is a pause or a noise.
-bool is_filler(const FrameSpan& word);
+/// Whether a word or a phone is a pause or a noise.
+bool is_filler(const FrameSpan& span);
 
 /// Time of the boundary before a frame: half a window less half a hop after the frame's first sample.
-double sphinx_boundary(int frame);
+inline double sphinx_boundary(int frame) { return 0.010 * frame + 0.0078; }
 
 /// A PocketSphinx decoder with the packaged en-us model, for forced alignment.
 /// For one thread at a time; what it returns does not depend on what it did
@@ -44,8 +45,9 @@ class SphinxAligner {
     std::vector<FrameSpan> words;   ///< in order, fillers such as "<sil>" included
     std::vector<FrameSpan> phones;  ///< without gaps, labels as in the model: "AH", "SIL", "+NSN+"
   };
-  /// Aligns known words to an utterance. The words of the result stop early
-  /// (phones empty) where the words do not go into the sound.
+  /// Aligns known words to sound of any length: long sound is searched in windows of a
+  /// minute, each of which begins where the one before has an anchor. The words of the
+  /// result stop early (phones empty) where the words do not go into the sound.
   Result align(std::span<const std::int16_t> sound, const std::vector<std::string>& words);
 
  private:
@@ -61,6 +63,7 @@ class SphinxPhoneLoop {
   ~SphinxPhoneLoop();
   SphinxPhoneLoop(const SphinxPhoneLoop&) = delete;
 
+  /// Sound of any length, in windows as SphinxAligner has them.
   std::vector<FrameSpan> decode(std::span<const std::int16_t> sound);
 
  private:

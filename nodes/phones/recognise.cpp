@@ -1,9 +1,7 @@
 #include "nodes/phones/recognise.h"
 
-#include <fmt/format.h>
-
-#include <stdexcept>
-
+#include "nodes/media/audio_file.h"
+#include "nodes/phones/boundaries.h"
 #include "nodes/phones/decoder_pool.h"
 #include "nodes/phones/pocketsphinx.h"
 #include "nodes/phones/sound.h"
@@ -13,17 +11,15 @@ namespace talkgraph {
 PhoneTrack Recognise::operator()(const Audio& audio, const PhoneTrack* known, Context& context) const {
   if (known) return *known;
   if (is_blank(audio)) return all_silence(audio);
-  if (audio.seconds() > kLongest)
-    throw std::runtime_error(fmt::format(
-        "phones.recognise: the sound lasts {:.0f} s, PocketSphinx takes at most {:.0f} s at once; cut it at a pause",
-        audio.seconds(), kLongest));
   context.warn("no transcript: about four in ten of the phones recognised will be wrong; give a transcript if you can");
-  const auto phones = decoder_pool<SphinxPhoneLoop>().take()->decode(sphinx_samples(audio));
-  return phones.empty() ? all_silence(audio) : phone_track(phones, audio.seconds());
+  const Audio sound = resampled(audio, kSphinxRate);
+  const auto phones = decoder_pool<SphinxPhoneLoop>().take()->decode(sphinx_samples(sound));
+  return phones.empty() ? all_silence(audio) : phone_track(phones, phone_starts(phones, sound), audio.seconds());
 }
 
 void describe(Description<Recognise>& d) {
   d.type("phones.recognise")
+      .version(2)
       .summary("phones of speech whose words are not known; about four in ten are wrong")
       .stored();
   d.source("PocketSphinx 0.8+5prealpha with its en-us model");

@@ -12,7 +12,7 @@ namespace talkgraph {
 /// phones.align) are passed on.
 ///
 /// The result covers the whole sound without gaps; digital silence and sound
-/// shorter than 50 ms give one "sil". Errors: sound longer than 5 minutes.
+/// shorter than 50 ms give one "sil".
 struct Recognise {
   PhoneTrack operator()(const Audio& audio, const PhoneTrack* known, Context& context) const;
 };

@@ -8,17 +8,6 @@
 #include "nodes/media/audio_file.h"
 
 namespace talkgraph {
-namespace {
-
-std::string cmu_label(const std::string& label) {
-  if (label == "SIL" || label.starts_with('+') || label.starts_with('<') || label.starts_with('[')) return "sil";
-  std::string lower = label;
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
-
-}  // namespace
-
 std::vector<std::int16_t> sphinx_samples(const Audio& audio) {
   std::vector<std::int16_t> samples;
   for (const double x : resampled(audio, kSphinxRate).samples)
@@ -35,16 +24,23 @@ PhoneTrack all_silence(const Audio& audio) {
   return {{{"sil", 0, audio.seconds()}}};
 }
 
-PhoneTrack phone_track(const std::vector<FrameSpan>& phones, double seconds) {
+std::string cmu_label(const std::string& label) {
+  if (label == "SIL" || label.starts_with('+') || label.starts_with('<') || label.starts_with('[')) return "sil";
+  std::string lower = label;
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
+PhoneTrack phone_track(const std::vector<FrameSpan>& phones, const std::vector<double>& starts, double seconds) {
   PhoneTrack track;
-  for (const auto& phone : phones) {
-    const std::string label = cmu_label(phone.label);
-    const double start = std::min(track.phones.empty() ? 0 : sphinx_boundary(phone.start), seconds);
-    if (!track.phones.empty()) track.phones.back().end = start;
+  for (std::size_t i = 0; i < phones.size(); ++i) {
+    const double end = i + 1 < starts.size() ? starts[i + 1] : seconds;
+    if (end <= starts[i]) continue;
+    const std::string label = cmu_label(phones[i].label);
     if (track.phones.empty() || label != "sil" || track.phones.back().label != "sil")
-      track.phones.push_back({label, start, seconds});
+      track.phones.push_back({label, starts[i], end});
     else
-      track.phones.back().end = seconds;
+      track.phones.back().end = end;
   }
   return track;
 }

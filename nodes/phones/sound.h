@@ -17,15 +17,14 @@ std::vector<std::int16_t> sphinx_samples(const Audio& audio);
 /// never beyond 3 steps of a 16-bit recording.
 bool is_blank(const Audio& audio);
 
-/// PocketSphinx counts the frames of an utterance in 16 bits and ends the
-/// process beyond that; seconds.
-inline constexpr double kLongest = 300;
-
 /// One "sil" of the length of the sound; nothing for no sound.
 PhoneTrack all_silence(const Audio& audio);
 
-/// Phones with times, from the model's labels: fillers become "sil" and
-/// adjoining silences one; the first starts at 0, the last ends with the sound.
-PhoneTrack phone_track(const std::vector<FrameSpan>& phones, double seconds);
+/// A phone of the model ("AH", "SIL", "+NSN+") as PhoneTrack has it; fillers are "sil".
+std::string cmu_label(const std::string& label);
+
+/// Phones with times, from the model's labels and the starts of each; adjoining silences
+/// become one, what has no length vanishes; the last ends with the sound.
+PhoneTrack phone_track(const std::vector<FrameSpan>& phones, const std::vector<double>& starts, double seconds);
 
 }  // namespace talkgraph
