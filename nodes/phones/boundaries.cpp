@@ -18,7 +18,7 @@ constexpr Eigen::Index kSide = 6;     // spectra averaged on either side of a bo
 constexpr double kReach = 0.02;       // how far a boundary moves, seconds
 constexpr double kTrust = 0.015;      // deviation of the model's boundaries, seconds
 constexpr double kDynamicRange = 11;  // of log power spectra
-constexpr double kClosure = 0.05;     // of a stop after a pause, seconds
+constexpr double kClosure = 0.1;      // of a stop at most, seconds
 
 bool one_of(std::string_view phone, std::initializer_list<std::string_view> set) {
   return std::find(set.begin(), set.end(), phone) != set.end();
@@ -74,7 +74,8 @@ std::vector<double> phone_starts(const std::vector<FrameSpan>& phones, const Aud
     const double next = i + 1 < model.size() ? model[i + 1] : audio.seconds();
     if (is_sharp(before, phone))
       starts[i] = sharpest(audio, model[i], (model[i - 1] + model[i]) / 2, (model[i] + next) / 2);
-    if (before == "sil" && is_stop(phone)) starts[i] = std::max(starts[i - 1], starts[i] - kClosure);
+    const bool within = i > 1 && before == "sil";
+    if (within && is_stop(phone) && starts[i] - starts[i - 1] <= kClosure) starts[i] = starts[i - 1];
   }
   return starts;
 }

@@ -11,8 +11,8 @@ namespace talkgraph {
 ///
 /// A boundary of the model is moved by at most 20 ms to where the spectrum changes most, unless both phones
 /// are vowels or glides, which pass into each other, or the sound of a nasal or of a voiced stop is released
-/// into one: those stay. A stop after a pause begins 50 ms before it is heard, as its closure takes, or with
-/// the pause where that is shorter.
+/// into one: those stay. A pause of at most 100 ms
+/// between a phone and a stop is the closure of the stop and belongs to it.
 std::vector<double> phone_starts(const std::vector<FrameSpan>& phones, const Audio& audio);
 
 }  // namespace talkgraph

@@ -104,7 +104,7 @@ TEST_F(SpokenSentence, TakesWordsInsteadOfATranscript) {
 
 TEST_F(SpokenSentence, PassesGivenPhonesOn) {
   const Transcript transcript{"something else"};
-  expect_same(Align{}(sentence.audio, &transcript, nullptr, &sentence.phones).value(), sentence.phones);
+  expect_same(Align{}(sentence.audio, &transcript, nullptr, &sentence.phones).value().phones, sentence.phones);
 }
 
 TEST_F(SpokenSentence, WithoutWordsIsLeftToRecognition) {
