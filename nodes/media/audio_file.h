@@ -7,14 +7,16 @@
 
 namespace talkgraph {
 
-/// Reads sound: WAV, FLAC, OGG and what else libsndfile knows, otherwise the
-/// sound track of whatever FFmpeg can read, aligned to the first picture of a
-/// video. Several channels become their mean.
+/// Reads sound: WAV (with extensible headers, RF64, W64), AIFF, AU, CAF, FLAC, OGG, MP3 and what else
+/// libsndfile knows, otherwise the sound track of whatever FFmpeg can read, aligned to the first picture
+/// of a video. Several channels become their mean.
 ///
-/// A WAV whose header leaves the length open (2³²−1, as programs write that
+/// A WAV whose header leaves the length open (2³²−1 or 2³¹−2¹², as programs write that
 /// stream) is read to the end of the file. Throws std::runtime_error naming the file
 /// where it is missing, empty, not sound, without one sample, shorter than its header
-/// promises, or holds a sample that is NaN or infinite.
+/// promises, holds a sample that is NaN or infinite, or has a rate outside 1 kHz to 1 MHz.
+/// Damage that a format cannot tell from sound (MP3 has no checksum, and no length) gives the sound
+/// that is left.
 Audio read_audio(const std::string& path);
 
 enum class WavFormat { pcm16, pcm24, float32 };
