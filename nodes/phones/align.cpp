@@ -83,12 +83,13 @@ double excess(const Stretch& stretch, std::span<const std::int16_t> sound) {
 /// The first stretch that is by more than `mismatch` further from its sound than the likeliest
 /// phones; nothing where the words fit.
 std::optional<Stretch> unlike(std::span<const FrameSpan> spans, std::span<const std::int16_t> sound, double mismatch) {
+  constexpr double kNearest = 10;  // no phones are nearer to their sound
   int fits_until = 0;
   for (std::size_t first = 0; first < spans.size(); ++first) {
     if (spans[first].start < fits_until) continue;
     auto stretch = stretch_from(spans, first);
     if (!stretch) break;
-    if (stretch->distance <= mismatch) continue;
+    if (stretch->distance <= mismatch + kNearest) continue;
     stretch->distance = excess(*stretch, sound);
     if (stretch->distance > mismatch) return stretch;
     fits_until = (stretch->start() + stretch->end()) / 2;
@@ -103,26 +104,29 @@ Words spoken(std::span<const FrameSpan> spans) {
   return words;
 }
 
+std::string place(const Stretch& stretch) {
+  const Words said = spoken(stretch.spans);
+  return fmt::format("{} from {:.2f} s to {:.2f} s is unlike what is said there",
+                     said.empty() ? "a pause" : quote(said), sphinx_boundary(stretch.start()),
+                     sphinx_boundary(stretch.end()));
+}
+
 void check_fit(const SphinxAligner::Result& result, const Words& words, std::span<const std::int16_t> sound,
                double mismatch) {
+  const auto stretch = unlike(result.words, sound, mismatch);
   if (result.phones.empty()) {
     const std::size_t reached = std::min(spoken(result.words).size(), words.size() - 1);
-    const double at = result.words.empty() ? 0 : sphinx_boundary(result.words.back().start);
     throw std::runtime_error(fmt::format(
-        "phones.align: the {} words of the transcript do not fit into the sound: it ends in word {}, {}, at {:.2f} s; "
-        "check that transcript and sound belong together",
-        words.size(), reached + 1, quote(std::span(words).subspan(reached, 1)), at));
+        "phones.align: the {} words of the transcript do not fit into the sound: it ends in word {}, {}{}; check that "
+        "transcript and sound belong together",
+        words.size(), reached + 1, quote(std::span(words).subspan(reached, 1)),
+        stretch ? ", and " + place(*stretch) : ""));
   }
-  const auto stretch = unlike(result.words, sound, mismatch);
-  if (!stretch) return;
-  const Words said = spoken(stretch->spans);
-  throw std::runtime_error(fmt::format(
-      "phones.align: the transcript does not match the sound: {} from {:.2f} s to {:.2f} s is unlike what is said "
-      "there "
-      "(by {:.0f} a frame less likely than other phones, at most {:g} is taken); correct the transcript, or leave it "
-      "out to have the phones recognised",
-      said.empty() ? "a pause" : quote(said), sphinx_boundary(stretch->start()), sphinx_boundary(stretch->end()),
-      stretch->distance, mismatch));
+  if (stretch)
+    throw std::runtime_error(fmt::format(
+        "phones.align: the transcript does not match the sound: {} (by {:.0f} a frame less likely than other "
+        "phones, at most {:g} is taken); correct the transcript, or leave it out to have the phones recognised",
+        place(*stretch), stretch->distance, mismatch));
 }
 
 /// The words between the phones that they begin with.

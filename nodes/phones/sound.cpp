@@ -5,13 +5,23 @@
 #include <cmath>
 #include <string>
 
+#include "graph/random.h"
 #include "nodes/media/audio_file.h"
 
 namespace talkgraph {
+namespace {
+
+/// Steps of 16 bits. Without noise the model's silence is not likelier than any phone.
+constexpr double kDither = 2;
+
+}  // namespace
+
 std::vector<std::int16_t> sphinx_samples(const Audio& audio) {
+  Random random(1, "phones", "dither");
   std::vector<std::int16_t> samples;
   for (const double x : resampled(audio, kSphinxRate).samples)
-    samples.push_back(static_cast<std::int16_t>(std::clamp(std::lround(x * 32767), -32767L, 32767L)));
+    samples.push_back(static_cast<std::int16_t>(
+        std::clamp(std::lround(x * 32767 + random.uniform(-kDither, kDither)), -32767L, 32767L)));
   return samples;
 }
 

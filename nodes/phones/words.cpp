@@ -1,5 +1,6 @@
 #include "nodes/phones/words.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -77,7 +78,17 @@ Words ordinal(Words words) {
   return words;
 }
 
-/// Takes a number from the start of the text: 1,000 · 3.5 · 2nd.
+/// "nineteen ninety" as "nineteen nineties".
+Words plural(Words words) {
+  std::string& last = words.back();
+  if (last.back() == 'y')
+    last.replace(last.size() - 1, 1, "ies");
+  else
+    last += last.ends_with("x") ? "es" : "s";
+  return words;
+}
+
+/// Takes a number from the start of the text: 1,000 · 3.5 · 2nd · 1990s.
 Words take_number(std::string_view& text) {
   std::string number;
   bool plain = true;
@@ -111,7 +122,48 @@ Words take_number(std::string_view& text) {
       text.remove_prefix(2);
       return ordinal(whole_number(number, false));
     }
+  if (text.starts_with("s") && (text.size() == 1 || !is_letter(text[1]))) {
+    text.remove_prefix(1);
+    return plural(whole_number(number, plain));
+  }
   return whole_number(number, plain);
+}
+
+/// A sign of money at the start of the text with a number behind it.
+struct Money {
+  std::string_view sign;
+  const char* one;
+  const char* several;
+};
+const Money* money_at(std::string_view text) {
+  static constexpr Money kinds[] = {
+      {"$", "dollar", "dollars"}, {"\u00a3", "pound", "pounds"}, {"\u20ac", "euro", "euros"}};
+  for (const auto& kind : kinds)
+    if (text.starts_with(kind.sign) && text.size() > kind.sign.size() && is_digit(text[kind.sign.size()])) return &kind;
+  return nullptr;
+}
+
+/// Takes a sum of money: $5 · $3.50 · £2 million.
+Words take_money(const Money& kind, std::string_view& text) {
+  text.remove_prefix(kind.sign.size());
+  Words words = take_number(text);
+  const auto point = std::find(words.begin(), words.end(), "point");
+  const bool hundredths = words.end() - point == 3;  // with two decimals
+  Words cents;
+  if (hundredths) {
+    const auto digit = [](const std::string& name) { return std::find(kSmall.begin(), kSmall.end(), name); };
+    const auto value = 10 * (digit(point[1]) - kSmall.begin()) + (digit(point[2]) - kSmall.begin());
+    if (value > 0) cents = cardinal(static_cast<std::uint64_t>(value));
+    words.erase(point, words.end());
+  }
+  for (const std::string_view scale : {" thousand", " million", " billion", " trillion"})
+    if (text.starts_with(scale)) {
+      words.emplace_back(scale.substr(1));
+      text.remove_prefix(scale.size());
+    }
+  words.emplace_back(words == Words{"one"} ? kind.one : kind.several);
+  append(words, cents);
+  return words;
 }
 
 std::string lower_with_plain_apostrophes(std::string_view text) {
@@ -139,7 +191,9 @@ Words spoken_words(std::string_view text) {
   std::string_view rest = plain;
   Words words;
   while (!rest.empty()) {
-    if (is_digit(rest[0])) {
+    if (const Money* kind = money_at(rest)) {
+      append(words, take_money(*kind, rest));
+    } else if (is_digit(rest[0])) {
       append(words, take_number(rest));
     } else if (is_letter(rest[0])) {
       std::size_t end = 1;

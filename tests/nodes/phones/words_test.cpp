@@ -38,6 +38,21 @@ TEST(SpokenWords, ReadYearsInHalves) {
   EXPECT_EQ(said("1,984"), "one thousand nine hundred eighty four");
 }
 
+TEST(SpokenWords, SpellOutDecades) {
+  EXPECT_EQ(said("the 1990s, the 60s"), "the nineteen nineties the sixties");
+  EXPECT_EQ(said("5s 6s"), "fives sixes");
+}
+
+TEST(SpokenWords, SpellOutMoney) {
+  EXPECT_EQ(said("$5"), "five dollars");
+  EXPECT_EQ(said("$1, \u00a31 or \u20ac20."), "one dollar one pound or twenty euros");
+  EXPECT_EQ(said("$3.50"), "three dollars fifty");
+  EXPECT_EQ(said("$3.00"), "three dollars");
+  EXPECT_EQ(said("$3.5 million"), "three point five million dollars");
+  EXPECT_EQ(said("\u00a32,000"), "two thousand pounds");
+  EXPECT_EQ(said("$ and $x"), "and x");
+}
+
 TEST(SpokenWords, SpellOutOrdinals) {
   EXPECT_EQ(said("1st 2nd 3rd 5th 12th 20th 21st 100th"),
             "first second third fifth twelfth twentieth twenty first one hundredth");
