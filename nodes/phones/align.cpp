@@ -71,26 +71,49 @@ std::optional<Stretch> stretch_from(std::span<const FrameSpan> spans, std::size_
   return Stretch{run, distance(run)};
 }
 
-/// How much further the words are from the sound than the likeliest phones.
-double excess(const Stretch& stretch, std::span<const std::int16_t> sound) {
-  const auto first = static_cast<std::size_t>(stretch.start()) * kSphinxHop;
-  const auto length = static_cast<std::size_t>(stretch.end() - stretch.start()) * kSphinxHop;
-  const auto part = sound.subspan(first, std::min(length, sound.size() - first));
-  const auto phones = decoder_pool<SphinxPhoneLoop>().take()->decode(part);
-  return phones.empty() ? 0 : stretch.distance - distance(phones);
-}
+/// The likeliest phones of stretches of a sound, found together with what is around, to which the model adapts.
+class LikeliestPhones {
+ public:
+  explicit LikeliestPhones(std::span<const std::int16_t> sound) : sound_(sound) {}
+
+  /// How unlike the frames [start, end) even they are.
+  double distance(int start, int end) {
+    if (start < start_ || end > end_) decode(start, end);
+    double sum = 0;
+    for (const auto& phone : phones_) {
+      const int frames = std::min(end, start_ + phone.end) - std::max(start, start_ + phone.start);
+      if (frames > 0) sum -= phone.score * frames;
+    }
+    return sum / (end - start);
+  }
+
+ private:
+  void decode(int start, int end) {
+    constexpr int kAround = 1000;
+    start_ = std::max(0, start - kAround);
+    end_ = end + kAround;
+    const auto first = static_cast<std::size_t>(start_) * kSphinxHop;
+    const auto last = std::min(static_cast<std::size_t>(end_) * kSphinxHop, sound_.size());
+    phones_ = decoder_pool<SphinxPhoneLoop>().take()->decode(sound_.subspan(first, last - first));
+  }
+
+  std::span<const std::int16_t> sound_;
+  int start_ = 0, end_ = 0;
+  std::vector<FrameSpan> phones_;
+};
 
 /// The first stretch that is by more than `mismatch` further from its sound than the likeliest
 /// phones; nothing where the words fit.
 std::optional<Stretch> unlike(std::span<const FrameSpan> spans, std::span<const std::int16_t> sound, double mismatch) {
   constexpr double kNearest = 10;  // no phones are nearer to their sound
+  LikeliestPhones likeliest(sound);
   int fits_until = 0;
   for (std::size_t first = 0; first < spans.size(); ++first) {
     if (spans[first].start < fits_until) continue;
     auto stretch = stretch_from(spans, first);
     if (!stretch) break;
     if (stretch->distance <= mismatch + kNearest) continue;
-    stretch->distance = excess(*stretch, sound);
+    stretch->distance -= likeliest.distance(stretch->start(), stretch->end());
     if (stretch->distance > mismatch) return stretch;
     fits_until = (stretch->start() + stretch->end()) / 2;
   }
@@ -184,7 +207,7 @@ void describe(Description<Align>& d) {
       .positive()
       .doc(
           "by how much the words of three seconds may be less likely than the likeliest phones, as a log likelihood a "
-          "frame, before the transcript counts as wrong: 5 to 24 for a right transcript, 27 to 60 for another one");
+          "frame, before the transcript counts as wrong: 5 to 28 for a right transcript, 28 to 60 for another one");
 }
 
 }  // namespace talkgraph
