@@ -46,7 +46,7 @@ std::string quote(std::span<const std::string> words) {
   return '"' + text + '"';
 }
 
-/// A run of words and pauses of three seconds, or of all where that is shorter, and how unlike the
+/// A run of words and pauses of five seconds, or of all where that is shorter, and how unlike the
 /// sound it is, as a distance per frame.
 struct Stretch {
   std::span<const FrameSpan> spans;
@@ -63,7 +63,7 @@ double distance(std::span<const FrameSpan> spans) {
 }
 
 std::optional<Stretch> stretch_from(std::span<const FrameSpan> spans, std::size_t first) {
-  constexpr int kFrames = 300;
+  constexpr int kFrames = 500;
   std::size_t end = first + 1;
   while (end < spans.size() && spans[end - 1].end - spans[first].start < kFrames) ++end;
   if (first > 0 && spans[end - 1].end - spans[first].start < kFrames) return {};
@@ -206,8 +206,8 @@ void describe(Description<Align>& d) {
   d.param("mismatch", &Align::mismatch)
       .positive()
       .doc(
-          "by how much the words of three seconds may be less likely than the likeliest phones, as a log likelihood a "
-          "frame, before the transcript counts as wrong: 5 to 28 for a right transcript, 28 to 60 for another one");
+          "by how much the words of five seconds may be less likely than the likeliest phones, as a log likelihood a "
+          "frame, before the transcript counts as wrong: 5 to 31 for a right transcript, 28 to 60 for another one");
 }
 
 }  // namespace talkgraph

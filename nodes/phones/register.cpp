@@ -6,6 +6,7 @@
 #include "nodes/phones/masks.h"
 #include "nodes/phones/recognise.h"
 #include "nodes/phones/visemes.h"
+#include "nodes/phones/vote_labels.h"
 
 namespace talkgraph {
 
@@ -17,6 +18,7 @@ void register_phones(Registry& registry) {
   registry.add<SpeechMask>();
   registry.add<WordMask>();
   registry.add<ToVisemes>();
+  registry.add<VoteLabels>();
 }
 
 }  // namespace talkgraph

@@ -163,9 +163,9 @@ TEST(Align, SaysWhereALongRecordingLeavesItsTranscript) {
         (differs ? "Thirty thousand men watch football every Thursday afternoon" : kTexts[i % kTexts.size()]) + ". ";
   }
   const std::string error = error_of(reading.audio, other.text);
-  EXPECT_THAT(error, AllOf(HasSubstr("unlike what is said there"), HasSubstr("football")));
+  ASSERT_THAT(error, HasSubstr("unlike what is said there"));
   const double at = std::stod(error.substr(error.find("from ") + 5));
-  EXPECT_NEAR(at, 20.0 / 30 * reading.audio.seconds(), 8);
+  EXPECT_NEAR(at, 20.0 / 30 * reading.audio.seconds(), 6);
 }
 
 TEST_F(SpokenSentence, DoesNotDependOnWhatCameBeforeOrOnThreads) {

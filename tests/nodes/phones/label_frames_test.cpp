@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "graph/random.h"
 #include "nodes/phones/masks.h"
+#include "nodes/phones/vote_labels.h"
 
 namespace talkgraph {
 namespace {
@@ -49,6 +51,44 @@ TEST(LabelFrames, FollowsTheTracksStartAndRate) {
   const FrameLabels labels = LabelFrames{}(phones, features);
   EXPECT_EQ(labels.labels, (Labels{"aa", "b", "b", "b"}));
   EXPECT_EQ(labels.rate, Rational(100));
+}
+
+TEST(VoteLabels, TakesTheMajorityOfTheWindow) {
+  // Four labels of 10 ms a video frame.
+  const FrameLabels at_100{{"aa", "aa", "b", "aa", "k", "k", "b", "b", "b", "k", "k", "s", "t", "t", "t"}, 100};
+  const FrameLabels voted = VoteLabels{}(at_100, video(4));
+  EXPECT_EQ(voted.labels, (Labels{"aa", "k", "k", "t"})) << "of equals the earlier; beyond the end is silence";
+  EXPECT_EQ(voted.rate, Rational(25));
+}
+
+TEST(VoteLabels, WeighsLabelsThatReachIntoTwoFrames) {
+  // Frames of 33.37 ms: the second is [33.37, 66.73): 6.63 ms "b", 10 ms "k", 10 ms "aa", 6.73 ms "b".
+  const FrameLabels at_100{{"s", "s", "s", "b", "k", "aa", "b", "b", "b", "b"}, 100};
+  EXPECT_EQ(VoteLabels{}(at_100, video(2, Rational(30000, 1001))).labels, (Labels{"s", "b"}));
+}
+
+TEST(VoteLabels, AgreesWithTheTimesOfPhonesThatBeginAtLabels) {
+  Random random(1, "label frames", "phones");
+  PhoneTrack phones;
+  FrameLabels at_100{{}, 100};
+  for (const char* label : {"sil", "b", "aa", "k", "s", "iy", "t", "sil", "m", "ow", "d", "z"}) {
+    const auto count = 1 + random.below(9);
+    const double start = static_cast<double>(at_100.labels.size()) / 100;
+    at_100.labels.insert(at_100.labels.end(), count, label);
+    phones.phones.push_back({label, start, static_cast<double>(at_100.labels.size()) / 100});
+  }
+  for (const Rational rate : {Rational(25), Rational(30), Rational(30000, 1001), Rational(60), Rational(100)}) {
+    const auto frames = static_cast<Eigen::Index>(static_cast<double>(at_100.labels.size()) / 100 * rate.value()) + 1;
+    EXPECT_EQ(VoteLabels{}(at_100, video(frames, rate)).labels, LabelFrames{}(phones, video(frames, rate)).labels)
+        << rate.str();
+  }
+}
+
+TEST(VoteLabels, AtItsOwnRateAndOfNothing) {
+  const FrameLabels labels{{"aa", "b", "k"}, 25};
+  EXPECT_EQ(VoteLabels{}(labels, video(3)).labels, labels.labels);
+  EXPECT_EQ(VoteLabels{}({{}, 100}, video(2)).labels, (Labels{"sil", "sil"}));
+  EXPECT_TRUE(VoteLabels{}(labels, video(0)).labels.empty());
 }
 
 using Marks = std::vector<std::int64_t>;
