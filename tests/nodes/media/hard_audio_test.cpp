@@ -4,13 +4,8 @@
 #include <random>
 
 #include "nodes/media/audio_file.h"
-#include "nodes/speech/cepstrum.h"
-#include "nodes/speech/frame.h"
-#include "nodes/speech/mel.h"
-#include "nodes/speech/preemphasis.h"
-#include "nodes/speech/spectrum.h"
-#include "nodes/speech/window.h"
 #include "tests/nodes/media/media_test.h"
+#include "tests/nodes/speech/chains.h"
 
 namespace talkgraph {
 namespace {
@@ -79,10 +74,7 @@ Audio buzz(double seconds, double rate = 16000) {
   return audio;
 }
 
-Eigen::MatrixXd mfcc(const Audio& audio) {
-  const Spectrum spectrum = ShortTimeSpectrum{}(Window{}(Frame{}(PreEmphasis{}(audio))));
-  return Cepstrum{}(Mel{}(spectrum)).values;
-}
+Eigen::MatrixXd mfcc(const Audio& audio) { return test::mfcc(audio).values; }
 
 class HardAudio : public MediaTest {
  protected:
