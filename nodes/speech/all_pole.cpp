@@ -5,26 +5,37 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "nodes/speech/cepstrum.h"
 #include "nodes/speech/lp_cepstrum.h"
 #include "nodes/types/frames.h"
 
 namespace talkgraph {
 namespace {
 
+/// Which band stands at a point of the spectrum.
+Eigen::Index band_at(EdgeBands edges, Eigen::Index point, Eigen::Index bands) {
+  switch (edges) {
+    case EdgeBands::copied:
+      return std::clamp<Eigen::Index>(point, 1, bands - 2);
+    case EdgeBands::added:
+      return std::clamp<Eigen::Index>(point - 1, 0, bands - 1);
+    case EdgeBands::kept:
+      break;
+  }
+  return point;
+}
+
 /// From the bands of a spectrum to its autocorrelations (bands × order + 1).
 Eigen::MatrixXd inverse_dft(EdgeBands edges, Eigen::Index bands, int order) {
-  const bool beyond = edges == EdgeBands::added;
-  const auto last = beyond ? bands + 1 : bands - 1;  // of the points
+  const auto last = edges == EdgeBands::added ? bands + 1 : bands - 1;  // of the points
   if (order > last)
     throw std::invalid_argument("an all-pole model of order " + std::to_string(order) +
                                 " needs a spectrum of more points, got " + std::to_string(last + 1));
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(bands, order + 1);
   for (Eigen::Index point = 0; point <= last; ++point) {
-    auto band = beyond ? point - 1 : point;
-    if (edges != EdgeBands::kept) band = std::clamp<Eigen::Index>(band, beyond ? 0 : 1, bands - (beyond ? 1 : 2));
     const double share = (point == 0 || point == last ? 0.5 : 1) / static_cast<double>(last);
     for (int lag = 0; lag <= order; ++lag)
-      matrix(band, lag) +=
+      matrix(band_at(edges, point, bands), lag) +=
           share * std::cos(std::numbers::pi * lag * static_cast<double>(point) / static_cast<double>(last));
   }
   return matrix;

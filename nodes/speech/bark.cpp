@@ -12,8 +12,7 @@ double to_hz(double bark) { return 600 * std::sinh(bark / 6); }
 }  // namespace
 
 Eigen::VectorXd Bark::centres(double nyquist) const {
-  const BankRange range(low, high, nyquist);
-  Eigen::VectorXd centres = Eigen::VectorXd::LinSpaced(filters, to_bark(range.low), to_bark(range.high));
+  Eigen::VectorXd centres = Eigen::VectorXd::LinSpaced(filters, to_bark(low), to_bark(bank_end(low, high, nyquist)));
   for (auto& centre : centres) centre = to_hz(centre);
   return centres;
 }

@@ -4,9 +4,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "nodes/speech/lp_cepstrum.h"
-
 namespace talkgraph {
+
+double lifter_weight(int n, double length) {
+  return length > 0 ? 1 + length / 2 * std::sin(std::numbers::pi * n / length) : 1;
+}
 
 Track Cepstrum::operator()(const Track& track) const {
   const auto filters = track.dimension();

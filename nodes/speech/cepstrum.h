@@ -18,4 +18,7 @@ struct Cepstrum {
 };
 void describe(Description<Cepstrum>& d);
 
+/// HTK's weight of the cepstral coefficient n, 1 + L/2 sin(π n / L); 1 for L = 0.
+double lifter_weight(int n, double length);
+
 }  // namespace talkgraph

@@ -13,10 +13,12 @@ Track log_outputs(const Spectrum& spectrum, const Eigen::MatrixXd& weights, doub
   return out;
 }
 
-BankRange::BankRange(double low, double high, double nyquist) : low(low), high(high > 0 ? high : nyquist) {
-  if (low >= this->high || this->high > nyquist * (1 + 1e-9))
-    throw std::invalid_argument("filters from " + std::to_string(low) + " to " + std::to_string(this->high) +
+double bank_end(double low, double high, double nyquist) {
+  const double end = high > 0 ? high : nyquist;
+  if (low >= end || end > nyquist * (1 + 1e-9))
+    throw std::invalid_argument("filters from " + std::to_string(low) + " to " + std::to_string(end) +
                                 " Hz do not fit below the Nyquist frequency of " + std::to_string(nyquist) + " Hz");
+  return end;
 }
 
 }  // namespace talkgraph

@@ -15,11 +15,8 @@ struct FilterOutputs {
 /// full scale is `scale`.
 Track log_outputs(const Spectrum& spectrum, const Eigen::MatrixXd& weights, double scale, double floor);
 
-/// Edges of a filter bank from `low` Hz to `high` Hz, 0: the Nyquist frequency. Throws std::invalid_argument where they
-/// do not fit below it.
-struct BankRange {
-  BankRange(double low, double high, double nyquist);
-  double low, high;
-};
+/// Where a filter bank from `low` Hz to `high` Hz ends; 0 stands for the Nyquist frequency. Throws
+/// std::invalid_argument where it does not fit below that.
+double bank_end(double low, double high, double nyquist);
 
 }  // namespace talkgraph

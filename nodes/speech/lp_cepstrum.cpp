@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace talkgraph {
 
@@ -17,10 +16,6 @@ void lp_cepstrum(const LinearPrediction& predictor, Eigen::Ref<Eigen::VectorXd> 
       sum += static_cast<double>(n - k) * a[k - 1] * out[n - k];
     out[n] = sum / static_cast<double>(n) + (n <= order ? a[n - 1] : 0);
   }
-}
-
-double lifter_weight(int n, double length) {
-  return length > 0 ? 1 + length / 2 * std::sin(std::numbers::pi * n / length) : 1;
 }
 
 }  // namespace talkgraph

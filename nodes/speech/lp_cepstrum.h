@@ -8,7 +8,4 @@ namespace talkgraph {
 /// c_(n-k). `out` says how many; c_0 of silence, whose error is 0, is that of the least number.
 void lp_cepstrum(const LinearPrediction& predictor, Eigen::Ref<Eigen::VectorXd> out);
 
-/// HTK's weight of the cepstral coefficient n, 1 + L/2 sin(π n / L); 1 for L = 0.
-double lifter_weight(int n, double length);
-
 }  // namespace talkgraph

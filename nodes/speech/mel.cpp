@@ -26,8 +26,8 @@ double triangle(double left, double centre, double right, double at) {
 }  // namespace
 
 Eigen::VectorXd Mel::edges(double nyquist) const {
-  const BankRange range(low, high, nyquist);
-  Eigen::VectorXd edges = Eigen::VectorXd::LinSpaced(filters + 2, to_mel(mel, range.low), to_mel(mel, range.high));
+  Eigen::VectorXd edges =
+      Eigen::VectorXd::LinSpaced(filters + 2, to_mel(mel, low), to_mel(mel, bank_end(low, high, nyquist)));
   for (auto& edge : edges) edge = to_hz(mel, edge);
   return edges;
 }
