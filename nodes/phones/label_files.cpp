@@ -231,6 +231,8 @@ std::vector<Interval> parse_csv_labels(std::string_view text, const std::string&
 std::vector<LabelTier> parse_text_grid(std::string_view text, const std::string& name) {
   if (text.starts_with("\xfe\xff") || text.starts_with("\xff\xfe"))
     complain(name, 1, "the TextGrid is in UTF-16; save it as UTF-8 (Praat: Text writing preferences)");
+  if (text.starts_with("ooBinaryFile"))
+    complain(name, 1, "the TextGrid is in Praat's binary format; save it as a text file (Praat: Save as text file)");
   TextGridTokens tokens(text, name);
   if (tokens.text() != "ooTextFile" || tokens.text() != "TextGrid") complain(name, 1, "this is not a Praat TextGrid");
   tokens.real();

@@ -67,6 +67,8 @@ TEST(LabelFiles, SayWhereTheyAreWrong) {
   EXPECT_EQ(error_of([] { parse_csv_labels("start,end,label\n2,1,aa\n", "a.csv"); }),
             "a.csv:2: the interval ends before it starts");
   EXPECT_NE(error_of([] { parse_text_grid("hello", "a.TextGrid"); }).find("a.TextGrid:1: "), std::string::npos);
+  EXPECT_NE(error_of([] { parse_text_grid("ooBinaryFile\x08TextGrid", "a.TextGrid"); }).find("save it as a text file"),
+            std::string::npos);
   const std::string whole = text_grid({{"phones", kPhones}});
   for (std::size_t cut : {10u, 60u, 120u, 200u, 300u})
     EXPECT_NE(error_of([&] { parse_text_grid(whole.substr(0, cut), "a.TextGrid"); }).find("expected"),
