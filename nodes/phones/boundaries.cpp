@@ -7,7 +7,6 @@
 #include "nodes/speech/frame.h"
 #include "nodes/speech/mel.h"
 #include "nodes/speech/spectrum.h"
-#include "nodes/speech/window.h"
 
 namespace talkgraph {
 namespace {
@@ -38,8 +37,9 @@ bool is_sharp(std::string_view before, std::string_view after) {
 
 /// Log mel power spectra (T x filters) of a stretch of sound.
 Eigen::MatrixXd log_spectra(const Audio& audio) {
-  const Frames frames = Window{}(Frame{kWindow, Rational(500), true}(audio));
-  const Eigen::MatrixXd mel = Mel{.filters = 24}(ShortTimeSpectrum{SpectrumKind::power}(frames)).values;
+  const Frames frames = Frame{.window = kWindow, .rate = Rational(500), .centred = true}(audio);
+  const Spectrum spectrum = ShortTimeSpectrum{.window = {}, .kind = SpectrumKind::power}(frames);
+  const Eigen::MatrixXd mel = Mel{.filters = 24}(spectrum).track.values;
   return mel.cwiseMax(mel.maxCoeff() - kDynamicRange);
 }
 
