@@ -46,29 +46,26 @@ std::string quote(std::span<const std::string> words) {
   return '"' + text + '"';
 }
 
-/// A run of words and pauses of five seconds, or of all where that is shorter, and how unlike the
-/// sound it is, as a distance per frame.
+/// A run that holds three seconds of words, or all where those are fewer, and how unlike the sound its
+/// words are, as a distance per frame.
 struct Stretch {
   std::span<const FrameSpan> spans;
   double distance = 0;
-
-  int start() const { return spans.front().start; }
-  int end() const { return spans.back().end; }
 };
 
-double distance(std::span<const FrameSpan> spans) {
-  double sum = 0;
-  for (const auto& span : spans) sum -= span.score * (span.end - span.start);
-  return sum / (spans.back().end - spans.front().start);
-}
-
 std::optional<Stretch> stretch_from(std::span<const FrameSpan> spans, std::size_t first) {
-  constexpr int kFrames = 500;
-  std::size_t end = first + 1;
-  while (end < spans.size() && spans[end - 1].end - spans[first].start < kFrames) ++end;
-  if (first > 0 && spans[end - 1].end - spans[first].start < kFrames) return {};
-  const auto run = spans.subspan(first, end - first);
-  return Stretch{run, distance(run)};
+  constexpr int kFrames = 300;
+  int frames = 0;
+  double sum = 0;
+  std::size_t end = first;
+  for (; end < spans.size() && frames < kFrames; ++end) {
+    if (is_filler(spans[end])) continue;
+    const int length = spans[end].end - spans[end].start;
+    frames += length;
+    sum -= spans[end].score * length;
+  }
+  if (frames == 0 || (first > 0 && frames < kFrames)) return {};
+  return Stretch{spans.subspan(first, end - first), sum / frames};
 }
 
 /// The likeliest phones of stretches of a sound, found together with what is around, to which the model adapts.
@@ -76,15 +73,19 @@ class LikeliestPhones {
  public:
   explicit LikeliestPhones(std::span<const std::int16_t> sound) : sound_(sound) {}
 
-  /// How unlike the frames [start, end) even they are.
-  double distance(int start, int end) {
-    if (start < start_ || end > end_) decode(start, end);
+  /// How unlike the sound of the words even they are.
+  double distance(std::span<const FrameSpan> words) {
+    if (words.front().start < start_ || words.back().end > end_) decode(words.front().start, words.back().end);
+    int frames = 0;
     double sum = 0;
-    for (const auto& phone : phones_) {
-      const int frames = std::min(end, start_ + phone.end) - std::max(start, start_ + phone.start);
-      if (frames > 0) sum -= phone.score * frames;
-    }
-    return sum / (end - start);
+    for (const auto& word : words)
+      for (const auto& phone : phones_) {
+        const int common = std::min(word.end, start_ + phone.end) - std::max(word.start, start_ + phone.start);
+        if (common <= 0 || is_filler(word)) continue;
+        frames += common;
+        sum -= phone.score * common;
+      }
+    return sum / std::max(1, frames);
   }
 
  private:
@@ -109,13 +110,13 @@ std::optional<Stretch> unlike(std::span<const FrameSpan> spans, std::span<const 
   LikeliestPhones likeliest(sound);
   int fits_until = 0;
   for (std::size_t first = 0; first < spans.size(); ++first) {
-    if (spans[first].start < fits_until) continue;
+    if (is_filler(spans[first]) || spans[first].start < fits_until) continue;
     auto stretch = stretch_from(spans, first);
     if (!stretch) break;
     if (stretch->distance <= mismatch + kNearest) continue;
-    stretch->distance -= likeliest.distance(stretch->start(), stretch->end());
+    stretch->distance -= likeliest.distance(stretch->spans);
     if (stretch->distance > mismatch) return stretch;
-    fits_until = (stretch->start() + stretch->end()) / 2;
+    fits_until = (stretch->spans.front().start + stretch->spans.back().end) / 2;
   }
   return {};
 }
@@ -128,10 +129,8 @@ Words spoken(std::span<const FrameSpan> spans) {
 }
 
 std::string place(const Stretch& stretch) {
-  const Words said = spoken(stretch.spans);
-  return fmt::format("{} from {:.2f} s to {:.2f} s is unlike what is said there",
-                     said.empty() ? "a pause" : quote(said), sphinx_boundary(stretch.start()),
-                     sphinx_boundary(stretch.end()));
+  return fmt::format("{} from {:.2f} s to {:.2f} s is unlike what is said there", quote(spoken(stretch.spans)),
+                     sphinx_boundary(stretch.spans.front().start), sphinx_boundary(stretch.spans.back().end));
 }
 
 void check_fit(const SphinxAligner::Result& result, const Words& words, std::span<const std::int16_t> sound,
@@ -206,8 +205,8 @@ void describe(Description<Align>& d) {
   d.param("mismatch", &Align::mismatch)
       .positive()
       .doc(
-          "by how much the words of five seconds may be less likely than the likeliest phones, as a log likelihood a "
-          "frame, before the transcript counts as wrong: 5 to 31 for a right transcript, 28 to 60 for another one");
+          "by how much the words of three seconds may be less likely than the likeliest phones, as a log likelihood a "
+          "frame, before the transcript counts as wrong: up to 23 for a right transcript, 30 and more for another one");
 }
 
 }  // namespace talkgraph
