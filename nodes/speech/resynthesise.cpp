@@ -16,7 +16,7 @@ void check(const Track* track, Eigen::Index columns, const char* what) {
                              std::to_string(columns) + " finite column(s)");
 }
 
-/// Pulses and noise of power 1, mixed by voicing.
+/// Pulses and noise of power 1 and mean 0, mixed by voicing.
 class Source {
  public:
   Source(double sample_rate, Random& random) : sample_rate_(sample_rate), random_(random) {}
@@ -26,7 +26,9 @@ class Source {
     phase_ += f0 / sample_rate_;
     const bool pulse = phase_ >= 1;
     phase_ -= std::floor(phase_);
-    return std::sqrt(1 - voicing) * noise + (pulse ? std::sqrt(voicing * sample_rate_ / f0) : 0);
+    const double share = std::min(1.0, f0 / sample_rate_);  // of samples that are pulses
+    const double height = pulse ? std::sqrt(1 / share) : 0;
+    return std::sqrt(1 - voicing) * noise + std::sqrt(voicing) * (height - std::sqrt(share));
   }
 
  private:
@@ -47,7 +49,7 @@ Track voiced(const Track& f0, double otherwise) {
     if (row[0] > 0)
       before = row[0];
     else
-      row << before, 0, row.tail(row.size() - 2);
+      row.head(2) << before, 0;
     row[1] = std::clamp(row[1], 0.0, 1.0);
   }
   return out;

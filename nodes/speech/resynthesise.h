@@ -10,9 +10,9 @@ namespace talkgraph {
 /// from frame to frame, its frequencies interpolated between frames and kept `spacing` rad apart. It stays bounded
 /// whatever the track.
 ///
-/// The excitation e has the power gain²: at a voicing v, pulses at f0 have the share v of it and white noise has 1 - v.
-/// Where no f0 is given, pulses come at `f0`; frames whose f0 is not above 0 are noise, and a fundamental that is
-/// interpolated keeps to the voiced neighbour. Without a gain it is `level`. A given `excitation` is used as it is
+/// The excitation e has the power gain²: at a voicing v, pulses at f0 have the share v of it and white noise has 1 - v;
+/// its mean is 0. Where no f0 is given, pulses come at `f0`; frames whose f0 is not above 0 are noise, and
+/// hold the fundamental of the voiced frame before. Without a gain it is `level`. A given `excitation` is used as it is
 /// and gives rate and length.
 ///
 /// Tracks may differ in rate and length: each is read at its own times and held beyond its ends. The sound lasts as
