@@ -50,8 +50,7 @@ std::size_t cache_verify(const Cache& cache) {
   for (const auto& entry : entries) {
     const auto wrong = cache.verify(entry.key);
     if (wrong.empty()) continue;
-    fmt::print("{} {}; removed\n", entry.key.str(), wrong);
-    cache.remove(entry.key);
+    fmt::print("{} {}; {}\n", entry.key.str(), wrong, cache.remove(entry.key) ? "removed" : "it cannot be removed");
     ++damaged;
   }
   fmt::print("{} results, {} damaged\n", entries.size(), damaged);

@@ -1,6 +1,7 @@
 #include "graph/key.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 // Gives the state's members, so that it can be made in place.
 #define XXH_STATIC_LINKING_ONLY
 #include <xxhash.h>
@@ -8,14 +9,20 @@
 #include <algorithm>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
+
+#include "graph/files_read.h"
 
 namespace talkgraph {
 namespace {
 
 namespace fs = std::filesystem;
 
+thread_local FilesRead* files_read = nullptr;
+
 Key key_of_file(const fs::path& path) {
+  if (files_read) files_read->stamps.push_back(FileStamp::of(path));
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error(path.string() + ": is missing or cannot be read");
   KeyMaker maker;
@@ -54,6 +61,16 @@ Key KeyMaker::key() const {
   const auto h = XXH3_128bits_digest(&state_->xxh);
   return {h.high64, h.low64};
 }
+
+FileStamp FileStamp::of(const fs::path& path) {
+  struct stat s {};
+  if (stat(path.c_str(), &s) != 0) return {path};
+  return {path, s.st_ino, static_cast<std::uint64_t>(s.st_size),
+          std::int64_t{s.st_ctim.tv_sec} * 1'000'000'000 + s.st_ctim.tv_nsec};
+}
+
+FilesRead::FilesRead() : outer_(std::exchange(files_read, this)) {}
+FilesRead::~FilesRead() { files_read = outer_; }
 
 Key file_key(const fs::path& path) {
   if (!fs::exists(path)) return {};

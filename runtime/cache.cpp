@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -43,12 +44,12 @@ class Workshop {
   fs::path path_;
 };
 
-/// Regular files below a folder, relative to it, sorted.
+/// Regular files below a folder, relative to it, sorted. Another process may remove them meanwhile.
 std::vector<std::string> files_below(const fs::path& folder) {
   std::vector<std::string> files;
-  if (!fs::exists(folder)) return files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), folder).string());
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (at->is_regular_file(error)) files.push_back(at->path().lexically_relative(folder).string());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -95,7 +96,11 @@ std::optional<Key> key_in(const std::string& name) {
 
 }  // namespace
 
-Cache::Cache(fs::path folder, std::uint64_t limit) : folder_(fs::absolute(folder) / version), limit_(limit) {
+Cache::Cache(fs::path folder, std::uint64_t limit)
+    : folder_(fs::absolute(folder) / version),
+      limit_(limit),
+      // Times of files are of a coarser clock.
+      opened_(fs::file_time_type::clock::now() - std::chrono::seconds(1)) {
   std::error_code error;
   fs::create_directories(folder_ / "work", error);
   if (error)
@@ -104,6 +109,14 @@ Cache::Cache(fs::path folder, std::uint64_t limit) : folder_(fs::absolute(folder
     throw std::runtime_error(fmt::format("the cache {} may not be written", folder_.string()));
   for (const auto& work : fs::directory_iterator(folder_ / "work", error))
     if (abandoned(work.path())) fs::remove_all(work.path(), error);
+}
+
+Cache::~Cache() {
+  try {
+    if (stored_) prune(limit_);
+  } catch (const std::exception&) {
+    // It is too large until the next run.
+  }
 }
 
 Cache::Claim::Claim(const Cache& cache, const Key& key) : cache_(&cache), key_(key) {
@@ -146,8 +159,10 @@ bool Cache::has(const Key& key) const {
 }
 
 void Cache::damaged(const Key& key, const std::string& what) const {
-  remove(key);
-  throw Damaged(fmt::format("the cache entry {} {}; it is made anew", place(key).string(), what));
+  const bool gone = !fs::exists(place(key));
+  if (!gone) remove(key);
+  throw Damaged(fmt::format("the cache entry {} {}; it is made anew", place(key).string(),
+                            gone ? "was removed by another run" : what));
 }
 
 Json Cache::read_entry(const Key& key) const {
@@ -157,8 +172,9 @@ Json Cache::read_entry(const Key& key) const {
   return entry;
 }
 
-std::string Cache::verify(const Key& key) const {
-  const Json entry = read_entry(key);
+std::string Cache::verify(const Key& key) const { return verify(key, read_entry(key)); }
+
+std::string Cache::verify(const Key& key, const Json& entry) const {
   if (entry.is_null()) return "is not one, or its entry.json was altered";
   try {
     const Json there = inventory(place(key));
@@ -173,22 +189,33 @@ std::string Cache::verify(const Key& key) const {
 }
 
 Cache::Result Cache::load(const Key& key, const NodeType& type, const fs::path& folder) const {
-  if (const auto wrong = verify(key); !wrong.empty()) damaged(key, wrong);
   const Json entry = read_entry(key);
+  if (const auto wrong = verify(key, entry); !wrong.empty()) damaged(key, wrong);
   Result result;
   result.outputs.resize(type.outputs.size());
-  result.seconds = entry["seconds"].get<double>();
-  result.warnings = entry["warnings"].get<std::vector<std::string>>();
-  const fs::path from = place(key);
   try {
+    result.seconds = entry["seconds"].get<double>();
+    result.warnings = entry["warnings"].get<std::vector<std::string>>();
     for (std::size_t p = 0; p < type.outputs.size(); ++p)
       if (entry["files"].contains(output_file(p)))
-        result.outputs[p] = talkgraph::load(from / output_file(p), *type.outputs[p].info);
+        result.outputs[p] = talkgraph::load(place(key) / output_file(p), *type.outputs[p].info);
   } catch (const std::exception& e) {
     damaged(key, e.what());
   }
-  if (fs::exists(from / "files")) put_files(from / "files", folder);
+  deliver(key, entry, folder);
   return result;
+}
+
+void Cache::deliver(const Key& key, const Json& entry, const fs::path& folder) const {
+  for (const auto& [name, file] : entry["files"].items()) {
+    if (!name.starts_with("files/")) continue;
+    OutputFile copy(folder / name.substr(std::string_view("files/").size()));
+    std::error_code error;
+    fs::copy_file(place(key) / name, copy.part(), fs::copy_options::overwrite_existing, error);
+    if (error && !fs::exists(place(key) / name)) damaged(key, "lacks " + name);
+    if (error) throw fs::filesystem_error("a result cannot be put into the run folder", folder, error);
+    copy.finish();
+  }
 }
 
 void Cache::store(const Key& key, const Json& about, const Result& result, const fs::path& written) {
@@ -208,20 +235,29 @@ void Cache::store(const Key& key, const Json& about, const Result& result, const
   fs::create_directories(place(key).parent_path());
   std::uint64_t bytes = 0;
   for (const auto& [name, file] : entry["files"].items()) bytes += file["bytes"].get<std::uint64_t>();
-  std::error_code error;
-  fs::rename(made, place(key), error);
-  if (error && error != std::errc::directory_not_empty && error != std::errc::file_exists)
-    throw fs::filesystem_error("the cache cannot keep a result", place(key), error);
+  const auto put = [&] {
+    std::error_code error;
+    fs::rename(made, place(key), error);
+    return error;
+  };
+  auto error = put();
+  const auto taken = [&] { return error == std::errc::directory_not_empty || error == std::errc::file_exists; };
+  if (taken() && read_entry(key).is_null() && remove(key)) error = put();
+  if (error && !taken()) throw fs::filesystem_error("the cache cannot keep a result", place(key), error);
+  stored_ = true;
   // Looking at all entries is not free: done whenever another tenth of the limit has come.
   if ((grown_ += bytes) < limit_ / 10) return;
   grown_ = 0;
-  prune(limit_);
+  prune(limit_, opened_);
 }
 
-void Cache::remove(const Key& key) const {
-  std::error_code ignored;
-  const Workshop work(work_folder());
-  fs::rename(place(key), work.path() / "removed", ignored);
+bool Cache::remove(const Key& key) const {
+  // Aside first, so that nobody sees half of it. That needs no room on the disk.
+  const Workshop aside(folder_ / "work" / fmt::format("{}-{}", getpid(), key.str()));
+  std::error_code error;
+  fs::rename(place(key), aside.path(), error);
+  if (error) fs::remove_all(place(key), error);
+  return !fs::exists(place(key), error);
 }
 
 std::vector<Cache::Entry> Cache::entries() const {
@@ -231,10 +267,15 @@ std::vector<Cache::Entry> Cache::entries() const {
     if (group.path().filename().string().size() != 2) continue;
     for (const auto& found : fs::directory_iterator(group.path(), error)) {
       const auto key = key_in(found.path().filename().string());
-      const auto used = fs::last_write_time(found.path() / "entry.json", error);
-      if (!key || error) continue;
+      if (!key) continue;
+      auto used = fs::last_write_time(found.path() / "entry.json", error);
+      if (error) used = fs::last_write_time(found.path(), error);
+      if (error) continue;  // another process was faster
       Entry entry{*key, {}, 0, used};
-      for (const auto& name : files_below(found.path())) entry.bytes += fs::file_size(found.path() / name, error);
+      for (const auto& name : files_below(found.path())) {
+        const auto bytes = fs::file_size(found.path() / name, error);
+        if (!error) entry.bytes += bytes;
+      }
       const Json json = read_entry(*key);
       if (!json.is_null()) entry.about = json["about"];
       all.push_back(std::move(entry));
@@ -244,14 +285,13 @@ std::vector<Cache::Entry> Cache::entries() const {
   return all;
 }
 
-std::uint64_t Cache::prune(std::uint64_t bytes) const {
+std::uint64_t Cache::prune(std::uint64_t bytes, fs::file_time_type spared) const {
   const auto all = entries();
   std::uint64_t total = 0, freed = 0;
   for (const auto& entry : all) total += entry.bytes;
   for (const auto& entry : all) {
-    if (total - freed <= bytes) break;
-    remove(entry.key);
-    freed += entry.bytes;
+    if (total - freed <= bytes || entry.used >= spared) break;
+    if (remove(entry.key)) freed += entry.bytes;
   }
   return freed;
 }

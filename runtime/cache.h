@@ -23,10 +23,10 @@ namespace talkgraph {
 /// was called, checksums), a file <port>.h5 for each output with a value, and
 /// files/ with what a sink wrote. It appears whole, by a rename; several
 /// processes may use one cache. The least recently used entries go when the
-/// cache grows over its limit.
+/// cache grows over its limit; those used since it was opened only when it is closed.
 class Cache {
  public:
-  /// An entry that is truncated, altered or not from here. It has been removed.
+  /// An entry that is truncated, altered or not from here, and has been removed; or that another process removed.
   struct Damaged : std::runtime_error {
     using std::runtime_error::runtime_error;
   };
@@ -62,6 +62,9 @@ class Cache {
   /// Makes the folder if need be. Throws std::runtime_error if that cannot be, or if the folder holds other things
   /// than a cache of this version.
   explicit Cache(std::filesystem::path folder, std::uint64_t limit = default_limit);
+  ~Cache();
+  Cache(const Cache&) = delete;
+  Cache& operator=(const Cache&) = delete;
 
   static constexpr std::uint64_t default_limit = 20'000'000'000;
   /// $TALKGRAPH_CACHE, else talkgraph in $XDG_CACHE_HOME, else ~/.cache/talkgraph.
@@ -77,15 +80,17 @@ class Cache {
   /// Keeps a result; `written` is the folder with a sink's files, or empty. Where another process was faster its
   /// entry stays. Throws std::runtime_error, on a full disk for one; the cache is then as before.
   void store(const Key& key, const Json& about, const Result& result, const std::filesystem::path& written);
-  /// Removes an entry.
-  void remove(const Key& key) const;
+  /// Removes an entry; false if it is still there.
+  bool remove(const Key& key) const;
 
-  /// All entries, the longest unused first. What is no entry is passed over.
+  /// All entries, the longest unused first, damaged ones among them. What is no entry is passed over.
   std::vector<Entry> entries() const;
   /// Reads an entry whole; says what is wrong with it, nothing if it is sound.
   std::string verify(const Key& key) const;
-  /// Removes the longest unused entries until no more than `bytes` are left; gives what was freed.
-  std::uint64_t prune(std::uint64_t bytes) const;
+  /// Removes the longest unused entries until no more than `bytes` are left, but none used at `spared` or later; gives
+  /// what was freed.
+  std::uint64_t prune(std::uint64_t bytes,
+                      std::filesystem::file_time_type spared = std::filesystem::file_time_type::max()) const;
 
   /// A folder of this process for what is being made, on the disk of the cache.
   std::filesystem::path work_folder() const;
@@ -94,10 +99,15 @@ class Cache {
   std::filesystem::path place(const Key& key) const;
   Json read_entry(const Key& key) const;
   [[noreturn]] void damaged(const Key& key, const std::string& what) const;
+  /// What is wrong with an entry whose entry.json was read.
+  std::string verify(const Key& key, const Json& entry) const;
+  void deliver(const Key& key, const Json& entry, const std::filesystem::path& folder) const;
 
   std::filesystem::path folder_;
   std::uint64_t limit_;
-  std::atomic<std::uint64_t> grown_{0};
+  std::filesystem::file_time_type opened_;
+  std::atomic<std::uint64_t> grown_{0};  // since the last look at all entries
+  std::atomic<bool> stored_{false};
   mutable std::mutex mutex_;
   mutable std::condition_variable unclaimed_;
   mutable std::set<Key> claimed_;

@@ -56,7 +56,8 @@ RunResult run(const Graph& graph, const RunOptions& options) {
   const auto warn = [&](std::string_view message) {
     for (auto* o : options.observers) o->notice(message);
   };
-  for (;;) {
+  constexpr int most_restarts = 100;
+  for (int restarts = 0; restarts <= most_restarts; ++restarts) {
     Keeper keeper(graph, *options.cache, options.folder, options.cancel, warn);
     try {
       return run_once(graph, options, &keeper);
@@ -65,6 +66,8 @@ RunResult run(const Graph& graph, const RunOptions& options) {
       warn(e.what());
     }
   }
+  warn("the cache loses entries faster than this run can use them: it goes on without it");
+  return run_once(graph, options, nullptr);
 }
 
 }  // namespace talkgraph

@@ -28,6 +28,7 @@ Forecast::Forecast(const Graph& graph, const Cache& cache, const std::atomic<boo
   recipes_.resize(count, Json::object());
   recipe_keys_.resize(count);
   ranks_.resize(count);
+  reads_all_.resize(count);
   keys_.resize(count);
   needs_.resize(count, Need::call);
   wanted_.resize(count);
@@ -42,7 +43,10 @@ Forecast::Forecast(const Graph& graph, const Cache& cache, const std::atomic<boo
     }
   }
   for (const auto& output : graph.outputs) wanted_[at(output.source.node)] = true;
-  for (std::size_t n = 0; n < count; ++n) make_keys(static_cast<int>(n), cancel);
+  for (std::size_t n = 0; n < count; ++n) {
+    make_keys(static_cast<int>(n), cancel);
+    reads_all_[n] = reads_all(static_cast<int>(n));
+  }
   for (std::size_t n = count; n-- > 0;) decide(static_cast<int>(n));
 }
 
@@ -52,7 +56,9 @@ void Forecast::make_keys(int n, const std::atomic<bool>* cancel) {
   const bool source = node(n).type->makes_stream;
   // The items of a source without inputs have keys of their own: its paths need not be read.
   if (!source || !domain(n).known) {
+    FilesRead read;
     recipes_[at(n)] = talkgraph::recipe(graph_, n);
+    recipe_files_.insert(recipe_files_.end(), read.stamps.begin(), read.stamps.end());
     recipe_keys_[at(n)] = KeyMaker().add(recipes_[at(n)].dump()).key();
   }
   if (source) {
@@ -93,9 +99,11 @@ void Forecast::learn_items(int source, const std::atomic<bool>* cancel) {
   while (stream && attempt([&] {
            context.check_cancelled();
            ++asked;
+           FilesRead read;
            auto item = stream->next();
            if (!item) return false;
            d.rows.push_back(new_row(d, item->key, made_by(source, item->value)));
+           d.rows.back().files = std::move(read.stamps);
            if (!d.at.emplace(item->key, &d.rows.back()).second) d.failed = true;
            return true;
          })) {
@@ -128,7 +136,7 @@ std::vector<Key> Forecast::made_by(int source, const std::vector<Value>& values)
 }
 
 Forecast::Row Forecast::new_row(const Domain& d, std::string item, std::vector<Key> made) {
-  Row row{std::move(item), std::move(made), {}, {}, {}};
+  Row row{std::move(item), std::move(made), {}, {}, {}, {}};
   row.keys.resize(d.nodes.size());
   row.needs.resize(d.nodes.size(), Need::call);
   row.wanted.resize(d.nodes.size());
@@ -172,6 +180,32 @@ Key Forecast::gathered_key(Graph::Port port) const {
   else
     maker.add(port_key(port, &d.whole));
   return gathered_[{port.node, port.port}] = maker.key();
+}
+
+bool Forecast::reads_all(int n) const {
+  bool all = node(n).domain < 0 && !node(n).type->makes_stream;
+  for_each_source(graph_, n, [&](std::size_t, Graph::Port source, Way way) {
+    all = all || way != Way::item || reads_all_[at(source.node)];
+  });
+  return all;
+}
+
+std::filesystem::path Forecast::changed_file(int n, const std::string& item) const {
+  std::filesystem::path changed;
+  const auto look = [&](const std::vector<FileStamp>& files) {
+    for (const auto& file : files)
+      if (changed.empty() && FileStamp::of(file.path) != file) changed = file.path;
+  };
+  look(recipe_files_);
+  if (!reads_all_[at(n)]) {
+    if (const Row* r = row(n, item)) look(r->files);
+  } else {
+    for (const auto& [source, d] : domains_) {
+      const std::shared_lock lock(d.mutex);
+      for (const auto& r : d.rows) look(r.files);
+    }
+  }
+  return changed;
 }
 
 // ---- needs -----------------------------------------------------------------

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "graph/files_read.h"
 #include "graph/graph.h"
 #include "graph/key.h"
 #include "runtime/cache.h"
@@ -52,6 +53,9 @@ class Forecast {
   std::vector<std::pair<std::string, Key>> items(int source) const;
   const Json& recipe(int node) const { return recipes_[static_cast<std::size_t>(node)]; }
 
+  /// A file on which the result of a call depends and that has changed since its key was made; empty if there is none.
+  std::filesystem::path changed_file(int node, const std::string& item) const;
+
   /// {"recipe": ..., "item": ..., "inputs": {port: key}}: what key() is made of.
   Json about(int node, const std::string& item) const;
 
@@ -60,6 +64,7 @@ class Forecast {
   struct Row {
     std::string item;
     std::vector<Key> made;  ///< by the source, one a port
+    std::vector<FileStamp> files;
     std::vector<Key> keys;
     std::vector<Need> needs;
     std::vector<bool> wanted;
@@ -90,6 +95,8 @@ class Forecast {
   void make_keys(int node, const std::atomic<bool>* cancel);
   void learn_items(int source, const std::atomic<bool>* cancel);
   void expect_items(int source);
+  /// Whether a node depends on more than the item at hand.
+  bool reads_all(int node) const;
   std::vector<Key> made_by(int source, const std::vector<Value>& values) const;
   static Row new_row(const Domain& d, std::string item, std::vector<Key> made);
   std::vector<std::pair<std::string, Key>> input_keys(int node, const Row* row) const;
@@ -106,7 +113,9 @@ class Forecast {
   const Cache& cache_;
   std::vector<Json> recipes_;
   std::vector<Key> recipe_keys_;
+  std::vector<FileStamp> recipe_files_;
   std::vector<std::size_t> ranks_;
+  std::vector<bool> reads_all_;
   std::vector<Key> keys_;     // of nodes that run once, of whole streams for sources
   std::vector<Need> needs_;   // likewise
   std::vector<bool> wanted_;  // of nodes that run once and sources; of others: by something outside their items

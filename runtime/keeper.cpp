@@ -58,6 +58,13 @@ Cache::Result Keeper::load(int n, const std::string& item) const {
 void Keeper::keep(int n, const std::string& item, const Cache::Result& result, const fs::path& written) {
   const Key key = forecast_.key(n, item);
   if (!key || full_) return;
+  if (const auto file = forecast_.changed_file(n, item); !file.empty()) {
+    if (!changed_.exchange(true))
+      warn_(fmt::format(
+          "{} changed while the run was at work: what depends on it is not kept for the next run; run again",
+          file.string()));
+    return;
+  }
   try {
     cache_.store(key, forecast_.about(n, item), result, written);
   } catch (const std::exception& e) {

@@ -45,6 +45,7 @@ class Keeper {
   Forecast forecast_;
   std::function<void(std::string_view)> warn_;
   std::atomic<bool> full_{false};
+  std::atomic<bool> changed_{false};
 };
 
 }  // namespace talkgraph

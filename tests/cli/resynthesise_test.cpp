@@ -20,7 +20,9 @@ TEST(Resynthesise, ThePipelineWritesEverySentenceAgainAsLoud) {
   Diagnostics diagnostics;
   const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/resynthesise.json", all_nodes(), diagnostics);
   ASSERT_TRUE(graph) << diagnostics.str();
-  run(*graph, {.folder = folder.path()});
+  RunOptions options;
+  options.folder = folder.path();
+  run(*graph, options);
   int sentences = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "sound")) {
     const std::string file = entry.path().string(), ending = "-original.wav";

@@ -126,14 +126,41 @@ TEST_F(CacheTest, TheLongestUnusedGoFirst) {
 TEST_F(CacheTest, StaysBelowItsLimit) {
   keep(0);
   const auto one = cache_.entries()[0].bytes;
-  Cache small(folder_.path() / "small", 5 * one);
-  for (int n = 0; n < 30; ++n) {
-    Cache::Result result;
-    result.outputs = {Value::of(Mark{1}), Value()};
-    small.store(key(n), {{"item", "u"}}, result, {});
+  Cache::Result result;
+  result.outputs = {Value::of(Mark{1}), Value()};
+  {
+    Cache small(folder_.path() / "small", 5 * one);
+    for (int n = 0; n < 30; ++n) small.store(key(n), {{"item", "u"}}, result, {});
+    EXPECT_EQ(small.entries().size(), 30u) << "what is in use stays";
+    const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    for (int n = 0; n < 29; ++n) {
+      const std::string name = key(n).str();
+      fs::last_write_time(small.folder() / name.substr(0, 2) / name / "entry.json", old);
+    }
+    small.store(key(30), {{"item", "u"}}, result, {});
+    small.store(key(31), {{"item", "u"}}, result, {});
+    EXPECT_LE(small.entries().size(), 6u);
+    for (int n = 32; n < 40; ++n) small.store(key(n), {{"item", "u"}}, result, {});
   }
-  EXPECT_LE(small.entries().size(), 6u);
-  EXPECT_TRUE(small.has(key(29)));
+  Cache again(folder_.path() / "small");
+  EXPECT_LE(again.entries().size(), 5u) << "the limit holds when the cache is closed";
+}
+
+TEST_F(CacheTest, AnEntryWithoutItsListIsFoundAndReplaced) {
+  keep(1);
+  fs::remove(entry(1) / "entry.json");
+  ASSERT_EQ(cache_.entries().size(), 1u);
+  EXPECT_NE(cache_.verify(cache_.entries()[0].key), "");
+  EXPECT_FALSE(cache_.has(key(1)));
+  keep(1);
+  EXPECT_EQ(cache_.verify(key(1)), "");
+}
+
+TEST_F(CacheTest, WhatAnotherProcessRemovedIsSaidToBeGone) {
+  keep(1);
+  EXPECT_TRUE(cache_.remove(key(1)));
+  EXPECT_TRUE(cache_.remove(key(1)));
+  EXPECT_THAT(damage(1), HasSubstr("was removed by another run"));
 }
 
 TEST_F(CacheTest, WhatAnEndedProcessLeftBehindIsSweptUp) {

@@ -140,6 +140,15 @@ TEST_P(CachedRun, DamagedEntriesAreMadeAnew) {
   for (const auto& entry : cache_.entries()) EXPECT_EQ(cache_.verify(entry.key), "");
 }
 
+TEST_P(CachedRun, ACacheTooSmallForARunServesIt) {
+  const Graph g = graph(1, 2, 40);
+  for (int i = 0; i < 3; ++i) {
+    Cache tiny(folder_.path() / "tiny", 1);
+    options_.cache = &tiny;
+    EXPECT_EQ(marks(run(g, options_)), plain(g));
+  }
+}
+
 TEST_P(CachedRun, WhatAFailureTouchedIsNotKept) {
   const Registry registry = toys({"toy.map", "toy.train", "toy.fail_at"});
   const auto make = [&](const std::string& key) {
@@ -190,6 +199,27 @@ TEST(Key, OfFilesFollowsTheirContent) {
   EXPECT_NE(a, file_key(folder.write("b/z", "two")));
   EXPECT_NE(file_key(folder.path() / "a"), file_key(folder.path() / "b"));
   EXPECT_FALSE(file_key(folder.path() / "none"));
+}
+
+TEST(Key, FilesThatChangeAfterTheyWereReadAreNoticed) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("x", "one");
+  std::vector<FileStamp> stamps;
+  {
+    FilesRead outer;
+    {
+      FilesRead read;
+      file_key(file);
+      stamps = read.stamps;
+    }
+    EXPECT_TRUE(outer.stamps.empty());
+  }
+  ASSERT_EQ(stamps.size(), 1u);
+  EXPECT_EQ(FileStamp::of(file), stamps[0]);
+  std::filesystem::remove(file);
+  EXPECT_NE(FileStamp::of(file), stamps[0]);
+  folder.write("x", "one");
+  EXPECT_NE(FileStamp::of(file), stamps[0]) << "written again with the same content, maybe another in between";
 }
 
 TEST(Key, PartsDoNotRunTogether) {
