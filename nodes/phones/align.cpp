@@ -46,7 +46,7 @@ std::string quote(std::span<const std::string> words) {
   return '"' + text + '"';
 }
 
-/// A run that holds three seconds of words, or all where those are fewer, and how unlike the sound its
+/// A run that holds five seconds of words, or all where those are fewer, and how unlike the sound its
 /// words are, as a distance per frame.
 struct Stretch {
   std::span<const FrameSpan> spans;
@@ -54,7 +54,7 @@ struct Stretch {
 };
 
 std::optional<Stretch> stretch_from(std::span<const FrameSpan> spans, std::size_t first) {
-  constexpr int kFrames = 300;
+  constexpr int kFrames = 500;
   int frames = 0;
   double sum = 0;
   std::size_t end = first;
@@ -196,7 +196,7 @@ std::optional<Alignment> Align::operator()(const Audio& audio, const Transcript*
 }
 
 void describe(Description<Align>& d) {
-  d.type("phones.align").version(2).summary("times of the phones of known words, by forced alignment").stored();
+  d.type("phones.align").version(3).summary("times of the phones of known words, by forced alignment").stored();
   d.source("PocketSphinx 0.8+5prealpha with its en-us model");
   d.input("audio", "the speech").input("transcript", "what is said").input("words", "instead of a transcript");
   d.input("given", "phones from the corpus, passed on");
@@ -205,8 +205,9 @@ void describe(Description<Align>& d) {
   d.param("mismatch", &Align::mismatch)
       .positive()
       .doc(
-          "by how much the words of three seconds may be less likely than the likeliest phones, as a log likelihood a "
-          "frame, before the transcript counts as wrong: up to 23 for a right transcript, 30 and more for another one");
+          "by how much the words of five seconds may be less likely than the likeliest phones, as a log likelihood a "
+          "frame, before the transcript counts as wrong: up to 15 for natural speech with its transcript (33 for "
+          "espeak-ng), 33 to 100 with another one");
 }
 
 }  // namespace talkgraph

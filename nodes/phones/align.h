@@ -31,7 +31,7 @@ struct Alignment {
 /// place; words for digital silence or for less than 50 ms; a transcript without
 /// words.
 struct Align {
-  double mismatch = 27;  ///< how much less likely than free phones three seconds of words may be, a frame
+  double mismatch = 35;  ///< how much less likely than free phones five seconds of words may be, a frame
 
   std::optional<Alignment> operator()(const Audio& audio, const Transcript* transcript, const WordTrack* words,
                                       const PhoneTrack* given) const;

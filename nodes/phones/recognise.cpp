@@ -19,7 +19,7 @@ PhoneTrack Recognise::operator()(const Audio& audio, const PhoneTrack* known, Co
 
 void describe(Description<Recognise>& d) {
   d.type("phones.recognise")
-      .version(2)
+      .version(3)
       .summary("phones of speech whose words are not known; about four in ten are wrong")
       .stored();
   d.source("PocketSphinx 0.8+5prealpha with its en-us model");

@@ -11,17 +11,20 @@
 namespace talkgraph {
 namespace {
 
-/// Steps of 16 bits. Without noise the model's silence is not likelier than any phone.
-constexpr double kDither = 2;
+/// A quiet room, as a share of the loudest sample. The model's silence is not likelier than other phones in
+/// digital silence, whose logarithms would also move the means that it subtracts.
+constexpr double kRoom = 5e-4;
 
 }  // namespace
 
 std::vector<std::int16_t> sphinx_samples(const Audio& audio) {
-  Random random(1, "phones", "dither");
+  const Audio sound = resampled(audio, kSphinxRate);
+  const double noise = sound.samples.size() ? kRoom * sound.samples.cwiseAbs().maxCoeff() : 0;
+  Random random(1, "phones", "room");
   std::vector<std::int16_t> samples;
-  for (const double x : resampled(audio, kSphinxRate).samples)
+  for (const double x : sound.samples)
     samples.push_back(static_cast<std::int16_t>(
-        std::clamp(std::lround(x * 32767 + random.uniform(-kDither, kDither)), -32767L, 32767L)));
+        std::clamp(std::lround(32767 * (x + random.uniform(-noise, noise))), -32767L, 32767L)));
   return samples;
 }
 

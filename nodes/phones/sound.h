@@ -10,7 +10,8 @@
 
 namespace talkgraph {
 
-/// The sound as PocketSphinx takes it: 16 kHz, 16 bits, resampled by soxr.
+/// The sound as PocketSphinx takes it: 16 kHz, 16 bits, resampled by soxr, with the noise of a quiet
+/// room (66 dB below the loudest sample, always the same).
 std::vector<std::int16_t> sphinx_samples(const Audio& audio);
 
 /// Whether there is nothing to be found in the sound: shorter than 50 ms, or

@@ -143,9 +143,9 @@ struct Reading {
 
 TEST(Align, TakesLongRecordings) {
   Reading reading;
-  for (int round = 0; round < 4; ++round)
-    for (std::size_t i = 0; i < kTexts.size(); ++i) reading.add(kTexts[i], round == 2 && i == 3 ? 150 : 0.4);
-  ASSERT_GT(reading.audio.seconds(), 300);
+  for (int round = 0; round < 3; ++round)
+    for (std::size_t i = 0; i < kTexts.size(); ++i) reading.add(kTexts[i], round == 2 && i == 3 ? 250 : 0.4);
+  ASSERT_GT(reading.audio.seconds(), 328) << "PocketSphinx counts frames in 16 bits";
   const PhoneTrack phones = align(reading.audio, reading.text);
   expect_covers(phones, reading.audio.seconds());
   auto value = figures({{"all", reading.phones}}, {{"all", phones}});
