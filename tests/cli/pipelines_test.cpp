@@ -45,6 +45,20 @@ TEST(Experiments, AreSound) {
   EXPECT_GT(count, 0u);
 }
 
+TEST(Experiments, OfSpeechWriteNothing) {
+  const Registry registry = all_nodes();
+  for (const char* name : {"speech-parameters", "synchronisation-grid-s1"}) {
+    Diagnostics diagnostics;
+    const std::string file = TALKGRAPH_SOURCE_DIR "/pipelines/experiments/" + std::string(name) + ".json";
+    const auto experiment = load_experiment(file, diagnostics);
+    ASSERT_TRUE(experiment) << diagnostics.str();
+    const auto graphs = load_trials(*experiment, registry, {}, diagnostics);
+    ASSERT_TRUE(graphs) << diagnostics.str();
+    for (const auto& graph : *graphs)
+      for (const auto& node : graph.nodes) EXPECT_FALSE(node.type->sink) << node.name;
+  }
+}
+
 TEST(Pipelines, LoadAgainFromWhatARunFolderKeeps) {
   const Registry registry = all_nodes();
   for (const auto& file : pipelines()) {
