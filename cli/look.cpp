@@ -84,7 +84,7 @@ std::string diff_graphs(const Graph& a, const Graph& b) {
 
 std::string draw_dot(const Graph& graph) {
   std::string out =
-      "digraph {\n  rankdir=LR;\n  fontname=\"Helvetica\";\n"
+      "digraph {\n  rankdir=LR;\n  newrank=true;\n  fontname=\"Helvetica\";\n"
       "  label=\"thick: a stream of items; yellow: makes a stream; green: writes files\";\n"
       "  node [shape=box, style=\"rounded,filled\", fillcolor=\"#eef3f8\", color=\"#5b7a99\", "
       "fontname=\"Helvetica\"];\n"

@@ -17,8 +17,9 @@ TEST(Resynthesise, ThePipelineWritesEverySentenceAgainAsLoud) {
   GTEST_SKIP() << "built without espeak-ng, which speaks the sentences";
 #endif
   const test::TemporaryFolder folder;
+  const Registry registry = all_nodes();
   Diagnostics diagnostics;
-  const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/resynthesise.json", all_nodes(), diagnostics);
+  const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/resynthesise.json", registry, diagnostics);
   ASSERT_TRUE(graph) << diagnostics.str();
   RunOptions options;
   options.folder = folder.path();

@@ -116,8 +116,10 @@ class PictureWriter {
     c.chroma_sample_location = AVCHROMA_LOC_LEFT;
     out_.stream().avg_frame_rate = out_.stream().r_frame_rate = c.framerate;
     const std::string crf = std::to_string(settings.crf);
+    // Else x264's sums of reals depend on where its memory lies.
+    const char* same_bits = "cpu-independent=1";
     out_.open(settings.format == ClipFormat::mp4
-                  ? options({{"preset", "veryfast"}, {"crf", crf}})
+                  ? options({{"preset", "veryfast"}, {"crf", crf}, {"x264-params", same_bits}})
                   : options({{"crf", crf}, {"b", "0"}, {"deadline", "good"}, {"cpu-used", "4"}}));
     allocate(c);
   }
