@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "graph/output_file.h"
+
 namespace talkgraph {
 namespace {
 
@@ -49,6 +51,7 @@ class Hdf5Archive : public Archive {
     groups_.emplace_back(open(), H5Fclose, path_ + ": " + failure);
   }
 
+  const std::string& path() const { return path_; }
   hid_t group() const { return groups_.back(); }
   void leave() override {
     groups_.pop_back();
@@ -77,9 +80,16 @@ class Hdf5Archive : public Archive {
   std::vector<std::string> names_;
 };
 
+/// Makes the bytes of a file in memory: HDF5 does not survive a full disk.
 class Hdf5Writer final : public Hdf5Archive {
  public:
-  explicit Hdf5Writer(const std::string& path) : Hdf5Archive(path, "cannot be created", [&] { return create(path); }) {}
+  /// `image` is the file once the writer is gone.
+  Hdf5Writer(const std::string& path, std::string& image)
+      : Hdf5Archive(path, "cannot be created", [&] { return create(image); }) {}
+  /// Cuts the image to the size of the file.
+  void finish() {
+    if (H5Fflush(group(), H5F_SCOPE_LOCAL) < 0) throw std::runtime_error(path() + ": cannot be made");
+  }
   bool loading() const override { return false; }
   void note(std::string_view member, std::string_view what, std::string_view text) override {
     const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "a text cannot be kept");
@@ -143,10 +153,28 @@ class Hdf5Writer final : public Hdf5Archive {
 
  private:
   /// A file that HDF5 1.8 and later read: small groups take little room.
-  static hid_t create(const std::string& path) {
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path);
+  static hid_t create(std::string& image) {
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "an HDF5 file cannot be made");
     H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
-    return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, timeless(H5P_FILE_CREATE), access);
+    H5FD_file_image_callbacks_t memory = {
+        [](size_t size, H5FD_file_image_op_t, void* bytes) { return resized(bytes, size); },
+        nullptr,
+        [](void*, size_t size, H5FD_file_image_op_t, void* bytes) { return resized(bytes, size); },
+        [](void*, H5FD_file_image_op_t, void*) { return herr_t{0}; },
+        [](void* bytes) { return bytes; },
+        [](void*) { return herr_t{0}; },
+        &image};
+    H5Pset_file_image_callbacks(access, &memory);
+    H5Pset_fapl_core(access, 1, false);
+    return H5Fcreate("in memory", H5F_ACC_TRUNC, timeless(H5P_FILE_CREATE), access);
+  }
+  /// Null if memory is short: HDF5 is C.
+  static void* resized(void* image, std::size_t size) noexcept try {
+    auto& bytes = *static_cast<std::string*>(image);
+    bytes.resize(size);
+    return bytes.data();
+  } catch (const std::bad_alloc&) {
+    return nullptr;
   }
   /// Objects that do not say when they were made: the same value gives the same bytes.
   static Handle timeless(hid_t kind) {
@@ -341,7 +369,16 @@ class HashArchive final : public Archive {
 
 }  // namespace
 
-std::unique_ptr<Archive> hdf5_writer(const std::string& path) { return std::make_unique<Hdf5Writer>(path); }
+void write_hdf5(const std::string& path, const std::function<void(Archive&)>& visit) {
+  std::string image;
+  {
+    Hdf5Writer archive(path, image);
+    visit(archive);
+    archive.finish();
+  }
+  write_file(path, image);
+}
+
 std::unique_ptr<Archive> hdf5_reader(const std::string& path) { return std::make_unique<Hdf5Reader>(path); }
 
 namespace detail {

@@ -57,9 +57,8 @@ std::vector<std::string> files_below(const fs::path& folder) {
 std::string output_file(std::size_t port) { return fmt::format("{}.h5", port); }
 
 void save(const fs::path& file, const Value& value) {
-  const auto archive = hdf5_writer(file.string());
   // An archive that saves does not change what it visits.
-  value.type().visit(*archive, const_cast<void*>(value.data()));
+  write_hdf5(file, [&](Archive& ar) { value.type().visit(ar, const_cast<void*>(value.data())); });
 }
 
 Value load(const fs::path& file, const TypeInfo& type) {

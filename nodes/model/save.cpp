@@ -3,8 +3,6 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "graph/output_file.h"
-
 namespace talkgraph {
 
 Artifact SaveModel::operator()(const AppearanceModel& face, const BaseClip& base, const Vlmm& contexts,
@@ -12,14 +10,11 @@ Artifact SaveModel::operator()(const AppearanceModel& face, const BaseClip& base
                                Context& context) const {
   TalkingFace all{face, base, contexts, states, mean, speak.json};
   std::string format = model_format;
-  OutputFile file(context.folder / name);
-  {
-    const auto ar = hdf5_writer(file.part());
-    note(*ar, made);
-    (*ar)("format", format);
-    (*ar)("model", all);
-  }
-  file.finish();
+  write_hdf5(context.folder / name, [&](Archive& ar) {
+    note(ar, made);
+    ar("format", format);
+    ar("model", all);
+  });
   return {name, "trained model"};
 }
 

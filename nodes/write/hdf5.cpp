@@ -1,6 +1,5 @@
 #include "nodes/write/hdf5.h"
 
-#include "graph/output_file.h"
 #include "nodes/types/item_file.h"
 
 namespace talkgraph {
@@ -9,17 +8,14 @@ Artifact WriteHdf5::operator()(const Value& value, const Provenance& made, Conte
   const std::string below = context.item.empty() ? folder : folder + "/" + made.node;
   const Artifact artifact = item_file(context, below, ".h5", made.node);
   const PortType& type = value.type().type;
-  OutputFile file(context.folder / artifact.path);
-  {
-    const auto ar = hdf5_writer(file.part());
-    ar->note("", "type", type.name);
-    ar->note("", "type_version", type.version);
-    ar->note("", "item", context.item);
-    note(*ar, made);
+  write_hdf5(context.folder / artifact.path, [&](Archive& ar) {
+    ar.note("", "type", type.name);
+    ar.note("", "type_version", type.version);
+    ar.note("", "item", context.item);
+    note(ar, made);
     // An archive that saves does not change what it visits.
-    value.type().visit(*ar, const_cast<void*>(value.data()));
-  }
-  file.finish();
+    value.type().visit(ar, const_cast<void*>(value.data()));
+  });
   return artifact;
 }
 

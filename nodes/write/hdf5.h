@@ -6,7 +6,7 @@
 namespace talkgraph {
 
 /// Writes a value of any type as HDF5, below the run folder: FOLDER/NODE.h5, those of a stream as FOLDER/NODE/ITEM.h5,
-/// NODE being the name of this node in the graph. The members are laid out as hdf5_writer (graph/archive.h) says; the
+/// NODE being the name of this node in the graph. The members are laid out as write_hdf5 (graph/archive.h) says; the
 /// file has the attributes type, type_version, item, made_by, node and provenance. Errors: the file cannot be written.
 struct WriteHdf5 {
   std::string folder = "hdf5";

@@ -1,8 +1,10 @@
 #include "graph/archive.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -101,7 +103,7 @@ class ArchiveFile : public testing::Test {
 
 TEST_F(ArchiveFile, RestoresEveryKindOfMember) {
   Whole w = example();
-  (*hdf5_writer(path))("whole", w);
+  write_hdf5(path, [&](Archive& ar) { ar("whole", w); });
   Whole back;
   back.none = Part{};
   back.no_rows = {{"gone", 1, 1}};
@@ -124,10 +126,10 @@ TEST_F(ArchiveFile, RestoresEveryKindOfMember) {
 
 TEST_F(ArchiveFile, TheSameValueGivesTheSameBytes) {
   Whole w = example();
-  (*hdf5_writer(path))("whole", w);
+  write_hdf5(path, [&](Archive& ar) { ar("whole", w); });
   const std::string first = folder.read("archive.h5");
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // the times that HDF5 keeps are in seconds
-  (*hdf5_writer(path))("whole", w);
+  write_hdf5(path, [&](Archive& ar) { ar("whole", w); });
   EXPECT_EQ(folder.read("archive.h5"), first);
 }
 
@@ -146,10 +148,10 @@ TEST_F(ArchiveFile, SaysWhatIsWrong) {
   folder.write("archive.h5", "not a model");
   EXPECT_EQ(complaint(), ": is not an HDF5 file");
   Part p;
-  (*hdf5_writer(path))("part", p);
+  write_hdf5(path, [&](Archive& ar) { ar("part", p); });
   folder.write("archive.h5", folder.read("archive.h5").substr(0, 600));
   EXPECT_EQ(complaint(), ": is cut short, damaged, or being written");
-  (*hdf5_writer(path))("part", p);
+  write_hdf5(path, [&](Archive& ar) { ar("part", p); });
   Whole w;
   try {
     (*hdf5_reader(path))("part", w);
@@ -157,7 +159,42 @@ TEST_F(ArchiveFile, SaysWhatIsWrong) {
   } catch (const std::runtime_error& e) {
     EXPECT_NE(std::string(e.what()).find("/part/i"), std::string::npos) << e.what();
   }
-  EXPECT_THROW(hdf5_writer("/nowhere/x.h5"), std::runtime_error);
+}
+
+/// No file grows beyond `bytes` while this lives, as on a full disk.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST_F(ArchiveFile, IsWrittenWholeOrNotAtAll) {
+  Part p{1, {2, 3}};
+  write_hdf5(path, [&](Archive& ar) { ar("part", p); });
+  const std::string first = folder.read("archive.h5");
+  p.list.resize(20);
+  for (const rlim_t room : {0, 100, 1000}) try {
+      const SmallDisk disk(room);
+      write_hdf5(path, [&](Archive& ar) { ar("part", p); });
+      ADD_FAILURE() << room;
+    } catch (const std::runtime_error& e) {
+      EXPECT_EQ(std::string(e.what()), path + ": cannot be written: File too large");
+    }
+  EXPECT_EQ(folder.read("archive.h5"), first);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "nothing half-written is left";
+  EXPECT_THROW(write_hdf5(path, [](Archive&) { throw std::runtime_error("no value"); }), std::runtime_error);
+  EXPECT_EQ(folder.read("archive.h5"), first);
 }
 
 TEST_F(ArchiveFile, ColumnsMustBeOfOneLength) {
@@ -166,12 +203,11 @@ TEST_F(ArchiveFile, ColumnsMustBeOfOneLength) {
     std::vector<double> start = {1, 2};
     std::vector<std::int64_t> count = {1};
   } uneven;
-  {
-    const auto ar = hdf5_writer(path);
-    (*ar)("label", uneven.label);
-    (*ar)("start", uneven.start);
-    (*ar)("count", uneven.count);
-  }
+  write_hdf5(path, [&](Archive& ar) {
+    ar("label", uneven.label);
+    ar("start", uneven.start);
+    ar("count", uneven.count);
+  });
   detail::Columns columns;
   Stretch example;
   fields(columns, example);

@@ -294,7 +294,7 @@ TEST(Vlmm, IsSavedWhole) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("vlmm.h5");
   Vlmm v = ContextTrain{.order = 3, .prune = 0, .keep = 0, .repeating = false}({{"x", stream("aabbabacab")}}), back;
-  (*hdf5_writer(path))("v", v);
+  write_hdf5(path, [&](Archive& ar) { ar("v", v); });
   (*hdf5_reader(path))("v", back);
   const auto hash = [](Vlmm& x) { return content_key([&](Archive& ar) { fields(ar, x); }); };
   EXPECT_EQ(hash(back), hash(v));

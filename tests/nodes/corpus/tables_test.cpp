@@ -63,7 +63,7 @@ TEST_F(TablesTest, NpyErrors) {
 
 TEST_F(TablesTest, Hdf5) {
   Eigen::MatrixXd values = kValues;
-  (*hdf5_writer(path("a.h5")))("blend", values);
+  write_hdf5(path("a.h5"), [&](Archive& ar) { ar("blend", values); });
   EXPECT_EQ(read_table(path("a.h5"), "blend").values, kValues);
   EXPECT_THAT(error_of([&] { read_table(path("a.h5"), "other"); }), HasSubstr("other: is missing"));
   EXPECT_THAT(error_of([&] { read_table(write("b.h5", "x"), "blend"); }), HasSubstr("b.h5: "));

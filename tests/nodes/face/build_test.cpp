@@ -64,10 +64,7 @@ TEST(BuildAppearance, SurvivesSavingAndLoading) {
   auto m = build(test::synthetic_prototypes());
   const test::TemporaryFolder folder;
   const auto path = folder.file("face.h5");
-  {
-    auto out = hdf5_writer(path);
-    fields(*out, m);
-  }
+  write_hdf5(path, [&](Archive& ar) { fields(ar, m); });
   AppearanceModel loaded;
   fields(*hdf5_reader(path), loaded);
   EXPECT_EQ(hash(loaded), hash(m));

@@ -237,7 +237,7 @@ TEST(Sgpdm, IsTheSameAfterSavingAndLoading) {
   Sgpdm model = train(wavy(5, 4), context), loaded;
   const test::TemporaryFolder folder;
   const auto path = folder.file("sgpdm.h5");
-  fields(*hdf5_writer(path), model);
+  write_hdf5(path, [&](Archive& ar) { fields(ar, model); });
   fields(*hdf5_reader(path), loaded);
   const auto hash = [](Sgpdm& m) { return content_key([&](Archive& ar) { fields(ar, m); }); };
   EXPECT_EQ(hash(model), hash(loaded));

@@ -214,7 +214,7 @@ TEST(Ssgpdm, SynthesisesTheSameAfterSavingAndLoading) {
   Ssgpdm saved = model(), loaded;
   const test::TemporaryFolder folder;
   const auto path = folder.file("ssgpdm.h5");
-  fields(*hdf5_writer(path), saved);
+  write_hdf5(path, [&](Archive& ar) { fields(ar, saved); });
   fields(*hdf5_reader(path), loaded);
   const auto s = speech(8);
   Context context;

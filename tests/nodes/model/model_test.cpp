@@ -54,10 +54,10 @@ TEST_F(ModelFile, SaysWhatIsWrongWithAFile) {
   };
   EXPECT_THAT(complaint(), HasSubstr("there is no such model file"));
   double number = 1;
-  (*hdf5_writer(file()))("number", number);
+  write_hdf5(file(), [&](Archive& ar) { ar("number", number); });
   EXPECT_THAT(complaint(), HasSubstr("not a talkgraph model"));
   std::string format = "talkgraph model 99";
-  (*hdf5_writer(file()))("format", format);
+  write_hdf5(file(), [&](Archive& ar) { ar("format", format); });
   EXPECT_THAT(complaint(), HasSubstr("\"talkgraph model 99\""));
   SaveModel{}(face, base, contexts, states, mean, {}, context);
   std::filesystem::resize_file(file(), std::filesystem::file_size(file()) / 2);
