@@ -145,6 +145,7 @@ struct Ports<std::tuple<A...>> {
     return all;
   }();
   static constexpr bool use_random = (std::is_same_v<A, Random&> || ...);
+  static constexpr bool use_context = (std::is_same_v<A, Context&> || ...);
   static constexpr bool use_provenance = (std::is_same_v<A, const Provenance&> || ...);
 };
 
@@ -324,6 +325,7 @@ NodeType Description<N>::finish() && {
   detail::check_described(type_, Ports::kinds.size());
   type_.makes_stream = makes_stream;
   type_.uses_random = Ports::use_random;
+  type_.uses_context = Ports::use_context;
   type_.uses_provenance = Ports::use_provenance;
   type_.parameters = parameters_.specs();
   auto specs = std::make_shared<const std::vector<ParameterSpec>>(type_.parameters);

@@ -59,6 +59,7 @@ struct NodeType {
   std::vector<ParameterSpec> parameters;
   bool makes_stream = false;
   bool uses_random = false;
+  bool uses_context = false;
   bool uses_provenance = false;  ///< what it writes says how it came about
   bool stored = false;           ///< its results are worth keeping on disk
   bool sink = false;             ///< runs for its effect, even if nothing reads its outputs

@@ -152,6 +152,8 @@ fs::path Cache::work_folder() const {
   return name;
 }
 
+std::vector<std::string> Cache::files(const Key& key) const { return files_below(place(key) / "files"); }
+
 bool Cache::has(const Key& key) const {
   const fs::path file = place(key) / "entry.json";
   return utimensat(AT_FDCWD, file.c_str(), nullptr, 0) == 0;

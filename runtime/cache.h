@@ -75,6 +75,8 @@ class Cache {
 
   /// Whether there is an entry; marks it as used.
   bool has(const Key& key) const;
+  /// What the sink of an entry wrote, below the run folder.
+  std::vector<std::string> files(const Key& key) const;
   /// The outputs of a call of `type`; what its sink wrote is put below `folder`. Throws Damaged.
   Result load(const Key& key, const NodeType& type, const std::filesystem::path& folder) const;
   /// Keeps a result; `written` is the folder with a sink's files, or empty. Where another process was faster its

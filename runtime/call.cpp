@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <optional>
 #include <set>
 
+#include "graph/output_file.h"
 #include "runtime/plan.h"
 
 namespace talkgraph {
@@ -36,6 +41,13 @@ std::string disk_note(const std::filesystem::path& folder) {
   std::error_code error;
   const auto space = std::filesystem::space(folder, error);
   return !error && space.available < 1'000'000 ? " (the disk is full)" : "";
+}
+
+/// Whether a node may write files: the run folder is known to those that ask for a Context.
+bool writes(const NodeType& type) { return type.sink && type.uses_context; }
+
+std::string call_name(const std::string& node, const std::string& item) {
+  return item.empty() ? fmt::format("node \"{}\"", node) : fmt::format("node \"{}\", item \"{}\"", node, item);
 }
 
 std::string place_of(const Place& place) {
@@ -68,14 +80,25 @@ void add(NodeStats& sum, const NodeStats& part) {
 
 }  // namespace
 
-/// Where a sink writes before its files go to the run folder and the cache; cleared away behind it.
-struct Caller::Desk {
-  explicit Desk(std::filesystem::path p) : path(std::move(p)) {}
+/// An empty folder where a sink writes before its files go to the run folder and the cache; cleared away behind it. It
+/// is on the disk of the run folder: a full cache must not stop a sink.
+class Caller::Desk {
+ public:
+  explicit Desk(const std::filesystem::path& folder) : path_(folder / fmt::format(".desk-{}-XXXXXX", getpid())) {
+    std::filesystem::create_directories(folder);
+    if (!mkdtemp(path_.data()))
+      throw std::runtime_error(fmt::format("{} cannot be written: {}", folder.string(), std::strerror(errno)));
+  }
   ~Desk() {
     std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
+    std::filesystem::remove_all(path_, ignored);
   }
-  std::filesystem::path path;
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
 };
 
 /// Books the time of a call, and tells observers of it. Reading clocks costs more than a cheap call does: where calls
@@ -113,8 +136,7 @@ class Caller::Watch {
 };
 
 std::string Failure::str() const {
-  return fmt::format("{}{}node \"{}\"{}: {}", place, place.empty() ? "" : ": error: ", node,
-                     item.empty() ? "" : fmt::format(", item \"{}\"", item), cause);
+  return fmt::format("{}{}{}: {}", place, place.empty() ? "" : ": error: ", call_name(node, item), cause);
 }
 
 Caller::Caller(const Graph& graph, const RunOptions& options, Keeper* keeper)
@@ -245,8 +267,16 @@ void Caller::load(Station& station) {
   const Watch watch(*this, station);
   const int n = station.node;
   const auto& item = station.context.item;
-  auto result = keeper_->load(n, item);
   station.books.loaded += 1;
+  Cache::Result result;
+  try {
+    for (const auto& file : keeper_->files(n, item)) claim(station, file);
+    result = keeper_->load(n, item);
+  } catch (const Cache::Damaged&) {
+    throw;
+  } catch (...) {
+    return failed(station, item, cause_of(std::current_exception()) + disk_note(options_.folder));
+  }
   for (auto* o : options_.observers) o->loaded(n, item);
   station.books.saved += result.seconds;
   for (const auto& warning : result.warnings)
@@ -265,7 +295,7 @@ void Caller::compute(Station& station) {
   const Watch watch(*this, station);
   station.books.calls += 1;
   try {
-    if (keeper_ && keeper_->keeps(n))
+    if (writes(type) || (keeper_ && keeper_->keeps(n)))
       call_and_keep(station);
     else
       station.functor->call(station.inputs, station.context, station.random, station.outputs);
@@ -288,13 +318,28 @@ void Caller::call_and_keep(Station& station) {
     result.warnings.emplace_back(message);
     station.context.warn(message);
   };
-  if (node(n).type->sink) context.folder = desk.emplace(keeper_->desk()).path;
+  if (writes(*node(n).type)) context.folder = desk.emplace(options_.folder).path();
   const auto start = nanoseconds(CLOCK_MONOTONIC);
   station.functor->call(station.inputs, context, station.random, station.outputs);
-  if (desk) keeper_->deliver(desk->path);
+  if (desk) deliver(station, desk->path());
   result.seconds = 1e-9 * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - start);
+  if (!keeper_ || tainted(n, item)) return;
   result.outputs = station.outputs;
-  if (!tainted(n, item)) keeper_->keep(n, item, result, desk ? desk->path : std::filesystem::path());
+  keeper_->keep(n, item, result, desk ? desk->path() : "");
+}
+
+void Caller::claim(const Station& station, const std::filesystem::path& file) {
+  const std::lock_guard lock(mutex_);
+  const auto [at, first] = written_.emplace(file, call_name(node(station.node).name, station.context.item));
+  if (!first)
+    throw std::runtime_error(
+        fmt::format("{} is written by {} already: each needs a folder or name of its own", file.string(), at->second));
+}
+
+void Caller::deliver(const Station& station, const std::filesystem::path& desk) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(desk))
+    if (entry.is_regular_file()) claim(station, entry.path().lexically_relative(desk));
+  put_files(desk, options_.folder);
 }
 
 bool Caller::tainted(int n, const std::string& item) const {

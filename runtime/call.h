@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -78,7 +80,7 @@ class Caller {
   friend class OpenSource;
 
   class Watch;
-  struct Desk;
+  class Desk;
 
   const Graph::Node& node(int n) const { return graph_.nodes[static_cast<std::size_t>(n)]; }
   static void sent(Station& station, const std::vector<Value>& outputs);
@@ -86,6 +88,11 @@ class Caller {
   void load(Station& station);
   void compute(Station& station);
   void call_and_keep(Station& station);
+  /// Books a file, named below the run folder, as written by the call at hand. Throws std::runtime_error if another
+  /// call wrote it.
+  void claim(const Station& station, const std::filesystem::path& file);
+  /// Puts what a sink wrote into the run folder.
+  void deliver(const Station& station, const std::filesystem::path& desk);
   /// Whether a failed item may have had a hand in what a node makes of an item.
   bool tainted(int node, const std::string& item) const;
   /// Books a failure; throws RunError unless the run keeps going.
@@ -102,7 +109,8 @@ class Caller {
   std::atomic<bool> stop_{false};
   mutable std::mutex mutex_;  // of what follows, and of making stations
   std::vector<Failure> failures_;
-  std::vector<std::pair<int, std::string>> failed_;  // nodes and items of failures_
+  std::vector<std::pair<int, std::string>> failed_;       // nodes and items of failures_
+  std::map<std::filesystem::path, std::string> written_;  // by which call
 };
 
 /// A source at work: its stream with what the stream refers to.

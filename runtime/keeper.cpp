@@ -1,13 +1,7 @@
 #include "runtime/keeper.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-
-#include "graph/output_file.h"
 #include "runtime/why.h"
 
 namespace talkgraph {
@@ -51,6 +45,10 @@ bool Keeper::made_meanwhile(int n, const std::string& item) const {
   return key && cache_.has(key);
 }
 
+std::vector<std::string> Keeper::files(int n, const std::string& item) const {
+  return cache_.files(forecast_.key(n, item));
+}
+
 Cache::Result Keeper::load(int n, const std::string& item) const {
   return cache_.load(forecast_.key(n, item), *graph_.nodes[static_cast<std::size_t>(n)].type, folder_);
 }
@@ -71,15 +69,5 @@ void Keeper::keep(int n, const std::string& item, const Cache::Result& result, c
     give_up(e.what());
   }
 }
-
-fs::path Keeper::desk() const {
-  std::string name = (folder_ / fmt::format(".desk-{}-XXXXXX", getpid())).string();
-  fs::create_directories(folder_);
-  if (!mkdtemp(name.data()))
-    throw std::runtime_error(fmt::format("{} cannot be written: {}", folder_.string(), std::strerror(errno)));
-  return name;
-}
-
-void Keeper::deliver(const fs::path& desk) const { put_files(desk, folder_); }
 
 }  // namespace talkgraph

@@ -26,15 +26,12 @@ class Keeper {
   Cache::Claim claim(int node, const std::string& item) const;
   /// Whether the result is there by now, though the forecast did not see it.
   bool made_meanwhile(int node, const std::string& item) const;
+  /// What the sink wrote whose result is kept, below the run folder.
+  std::vector<std::string> files(int node, const std::string& item) const;
   /// Throws Cache::Damaged.
   Cache::Result load(int node, const std::string& item) const;
   /// Keeps a result; `written` holds what a sink wrote, or is empty. What cannot be kept is not an error of the run.
   void keep(int node, const std::string& item, const Cache::Result& result, const std::filesystem::path& written);
-
-  /// An empty folder for a sink to write to, on the disk of the run folder: a full cache must not stop it.
-  std::filesystem::path desk() const;
-  /// Puts what a sink wrote into the run folder.
-  void deliver(const std::filesystem::path& desk) const;
 
  private:
   void give_up(const std::string& why);

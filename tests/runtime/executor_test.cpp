@@ -8,6 +8,7 @@
 #include "runtime/books.h"
 #include "tests/runtime/graph_builder.h"
 #include "tests/runtime/toy_nodes.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -124,6 +125,70 @@ TEST_P(ExecutorTest, AnErrorNamesNodeItemAndPlace) {
   EXPECT_EQ(e.failure.node, "track");
   EXPECT_EQ(e.failure.item, "u7");
   EXPECT_STREQ(e.what(), "test.json:2:5: error: node \"track\", item \"u7\": the picture is black");
+}
+
+TEST_P(ExecutorTest, NoTwoCallsWriteTheSameFile) {
+  const test::TemporaryFolder folder;
+  Cache cache(folder.path() / "cache");
+  const int source = b_.add("source", "toy.source", {}, {{"to", 1}});
+  b_.add("one", "toy.write", {source});
+  b_.add("two", "toy.write", {b_.add("map", "toy.map", {source})});
+  const auto clash = [](const std::string& second, const std::string& first) {
+    return HasSubstr("node \"" + second + "\", item \"u0\": out/u0.txt is written by node \"" + first +
+                     "\", item \"u0\" already");
+  };
+  for (Cache* const kept : {static_cast<Cache*>(nullptr), &cache, &cache}) {
+    options_.cache = kept;
+    options_.folder = folder.path() / "run";
+    EXPECT_THAT(error().what(), testing::AnyOf(clash("two", "one"), clash("one", "two")));
+    options_.keep_going = true;
+    options_.folder = folder.path() / "kept going";
+    EXPECT_EQ(go().failures.size(), 1u);
+    options_.keep_going = false;
+  }
+}
+
+TEST_P(ExecutorTest, AFoundFileClashesWithAnother) {
+  const test::TemporaryFolder folder;
+  Cache cache(folder.path() / "cache");
+  options_.cache = &cache;
+  options_.keep_going = true;
+  for (const char* const node : {"one", "two"}) {
+    GraphBuilder alone(registry_);
+    const int source = alone.add("source", "toy.source", {}, {{"to", 3}});
+    alone.add(node, "toy.write", {node == std::string("one") ? source : alone.add("map", "toy.map", {source})});
+    options_.folder = folder.path() / node;
+    run(alone.graph, options_);
+  }
+  const int source = b_.add("source", "toy.source", {}, {{"to", 3}});
+  const int one = b_.add("one", "toy.write", {source});
+  const int two = b_.add("two", "toy.write", {b_.add("map", "toy.map", {source})});
+  options_.folder = folder.path() / "both";
+  const auto result = go();
+  const auto& nodes = result.nodes;
+  EXPECT_EQ(nodes[static_cast<std::size_t>(one)].loaded + nodes[static_cast<std::size_t>(two)].loaded, 6u);
+  EXPECT_EQ(result.failures.size(), 3u);
+  for (const auto& failure : result.failures)
+    EXPECT_EQ(folder.read("both/out/" + failure.item + ".txt"),
+              folder.read((failure.node == "one" ? "two/out/" : "one/out/") + failure.item + ".txt"))
+        << "the first stays";
+}
+
+TEST_P(ExecutorTest, FilesAreWholeWithAndWithoutACache) {
+  const test::TemporaryFolder folder;
+  Cache cache(folder.path() / "cache");
+  b_.add("write", "toy.write", {b_.add("source", "toy.source", {}, {{"to", 3}})});
+  for (Cache* const kept : {static_cast<Cache*>(nullptr), &cache}) {
+    options_.cache = kept;
+    options_.folder = folder.path() / (kept ? "kept" : "plain");
+    go();
+  }
+  for (const char* const item : {"u0", "u1", "u2"}) {
+    const std::string name = std::string("/out/") + item + ".txt";
+    EXPECT_NE(folder.read("plain" + name), "");
+    EXPECT_EQ(folder.read("plain" + name), folder.read("kept" + name));
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path() / "plain"), {}), 1) << "no desk is left";
 }
 
 TEST_P(ExecutorTest, KeepsGoingAndListsWhatFailed) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "graph/output_file.h"
 #include "graph/registry.h"
 
 namespace talkgraph {
@@ -223,6 +224,18 @@ struct Endless {
 };
 inline void describe(Description<Endless>& d) { d.type("toy.endless").summary("never ends").input("in").output("out"); }
 
+struct Write {
+  std::string folder = "out";
+  Mark operator()(const Mark& in, Context& context) const {
+    write_file(context.folder / folder / (context.item + ".txt"), std::to_string(in.bits));
+    return in;
+  }
+};
+inline void describe(Description<Write>& d) {
+  d.type("toy.write").summary("writes a file an item").sink().input("in").output("out");
+  d.param("folder", &Write::folder);
+}
+
 inline Registry registry() {
   Registry r;
   r.add<Source>();
@@ -240,6 +253,7 @@ inline Registry registry() {
   r.add<BreakOff>();
   r.add<Gap>();
   r.add<Endless>();
+  r.add<Write>();
   return r;
 }
 

@@ -127,7 +127,7 @@ TEST_F(EncodeTest, NamesAndFolders) {
   node.prefix = "a-";
   node.suffix = "-b";
   context_.item = "s1/x";
-  EXPECT_EQ(node(test_video(2, 25), nullptr, context_).path, "clips/a-s1_x-b.mp4");
+  EXPECT_EQ(node(test_video(2, 25), nullptr, context_).path, "clips/a-s1/x-b.mp4");
   context_.item = "";
   EXPECT_EQ(WriteClip{}(test_video(2, 25), nullptr, context_).path, "clips/clip.mp4");
 }

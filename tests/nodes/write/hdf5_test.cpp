@@ -93,10 +93,10 @@ TEST_F(WritesHdf5, RecordingsWithTheirSoundAndPictures) {
 }
 
 TEST_F(WritesHdf5, OneFileAnItemOfANode) {
-  EXPECT_EQ(WriteHdf5{}(Value::of(Track()), {"in/write", "{}"}, context).path, "hdf5/in_write.h5");
+  EXPECT_EQ(WriteHdf5{}(Value::of(Track()), {"in/write", "{}"}, context).path, "hdf5/in/write.h5");
   context.item = "s1/a";
-  EXPECT_EQ(WriteHdf5{}(Value::of(Track()), {"in/write", "{}"}, context).path, "hdf5/in/write/s1_a.h5");
-  EXPECT_EQ(WriteHdf5{"out"}(Value::of(Track()), {"w", "{}"}, context).path, "out/w/s1_a.h5");
+  EXPECT_EQ(WriteHdf5{}(Value::of(Track()), {"in/write", "{}"}, context).path, "hdf5/in/write/s1/a.h5");
+  EXPECT_EQ(WriteHdf5{"out"}(Value::of(Track()), {"w", "{}"}, context).path, "out/w/s1/a.h5");
 }
 
 TEST_F(WritesHdf5, WholeOrNotAtAll) {

@@ -40,10 +40,10 @@ const char* const kText = "version: 1\nn_points: 3\n{\n1 1\n11.5 1.3333333333333
 TEST_F(WritesLandmarks, OneFileAFrame) {
   context.item = "s1/a";
   EXPECT_EQ(WriteLandmarks{}({{points, points + Shape::Ones(3, 2), points}, 25, "three"}, context).path,
-            "landmarks/s1_a");
-  EXPECT_EQ(folder.read("landmarks/s1_a/000000.pts"), kText);
-  EXPECT_THAT(folder.read("landmarks/s1_a/000001.pts"), HasSubstr("{\n2 2\n"));
-  EXPECT_EQ(folder.read("landmarks/s1_a/000002.pts"), kText);
+            "landmarks/s1/a");
+  EXPECT_EQ(folder.read("landmarks/s1/a/000000.pts"), kText);
+  EXPECT_THAT(folder.read("landmarks/s1/a/000001.pts"), HasSubstr("{\n2 2\n"));
+  EXPECT_EQ(folder.read("landmarks/s1/a/000002.pts"), kText);
 }
 
 TEST_F(WritesLandmarks, OnlyWhatTheFormatCanSay) {

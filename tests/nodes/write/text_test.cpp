@@ -33,8 +33,8 @@ TEST_F(WriteText, TablesAreCsvAndJson) {
 
 TEST_F(WriteText, TablesOfAStreamGoBelowTheName) {
   context.item = "s1/a";
-  EXPECT_EQ((WriteTable{"t"}(table, context)).path, "t/s1_a.csv");
-  EXPECT_EQ(Json::parse(read("t/s1_a.json"))["title"], "scores");
+  EXPECT_EQ((WriteTable{"t"}(table, context)).path, "t/s1/a.csv");
+  EXPECT_EQ(Json::parse(read("t/s1/a.json"))["title"], "scores");
 }
 
 TEST_F(WriteText, TablesMayBeEmptyButNotAmbiguous) {
