@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
@@ -23,7 +24,7 @@ struct Cancelled : std::runtime_error {
 class Context {
  public:
   std::string item;                         ///< key of the item, empty for a node that runs once
-  std::filesystem::path folder = ".";       ///< the run folder: files that a node writes go below it
+  std::filesystem::path folder = ".";       ///< the run folder, or where its files are put together
   Provenance provenance;                    ///< only for a node that asks for it
   std::function<void(double)> on_progress;  ///< share done, 0..1
   std::function<void(std::string_view)> on_log;
@@ -31,6 +32,13 @@ class Context {
   const std::atomic<bool>* cancel = nullptr;  ///< the user wants the run to end
   const std::atomic<bool>* stop = nullptr;    ///< the run ends, as another node failed
 
+  /// Where a node writes a file. Throws std::invalid_argument if `path` leads out of the run folder.
+  std::filesystem::path file(const std::filesystem::path& path) const {
+    if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
+      throw std::invalid_argument("\"" + path.string() +
+                                  "\" is not below the run folder: leave out a leading \"/\" and \"..\"");
+    return folder / path;
+  }
   void progress(double share) const {
     if (on_progress) on_progress(share);
   }

@@ -25,7 +25,7 @@ Artifact FaceModes::operator()(const AppearanceModel& model, Context& context) c
   cv::Mat sheet;
   cv::vconcat(lines, sheet);
   const Artifact artifact{name + ".png", "modes of the face model"};
-  write_picture(context.folder / artifact.path, sheet);
+  write_picture(context.file(artifact.path), sheet);
   return artifact;
 }
 

@@ -43,7 +43,7 @@ Artifact FrameStrip::operator()(const Video& video, const FrameLabels* labels, C
     tiles[static_cast<std::size_t>(i)].copyTo(
         sheet(cv::Rect({i % across * size.width, i / across * size.height}, size)));
   Artifact artifact = item_file(context, folder, ".png", "strip");
-  write_picture(context.folder / artifact.path, sheet);
+  write_picture(context.file(artifact.path), sheet);
   artifact.title = "frames of " + video.source->name();
   return artifact;
 }

@@ -10,7 +10,7 @@ Artifact SaveModel::operator()(const AppearanceModel& face, const BaseClip& base
                                Context& context) const {
   TalkingFace all{face, base, contexts, states, mean, speak.json};
   std::string format = model_format;
-  write_hdf5(context.folder / name, [&](Archive& ar) {
+  write_hdf5(context.file(name), [&](Archive& ar) {
     note(ar, made);
     ar("format", format);
     ar("model", all);

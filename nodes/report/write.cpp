@@ -18,13 +18,13 @@ Artifact WriteReport::operator()(const Collected<Table>& tables, const Collected
   if (!plots.empty()) page += "<h2>Plots</h2>\n";
   for (std::size_t i = 0; i < plots.size(); ++i) {
     page += html_plot(plots[i]);
-    write_file(context.folder / "plots" / (plots.key(i) + ".svg"), plots[i].svg);
+    write_file(context.file("plots/" + plots.key(i) + ".svg"), plots[i].svg);
   }
   if (!clips.empty()) page += "<h2>Clips</h2>\n<div class=\"clips\">\n";
   for (std::size_t i = 0; i < clips.size(); ++i) page += html_clip(clips.key(i), clips[i]);
   if (!clips.empty()) page += "</div>\n";
-  write_file(context.folder / "metrics.json", metrics.dump(2) + "\n");
-  write_file(context.folder / "report.html", page + html_close());
+  write_file(context.file("metrics.json"), metrics.dump(2) + "\n");
+  write_file(context.file("report.html"), page + html_close());
   return {"report.html", title};
 }
 

@@ -7,7 +7,7 @@ namespace talkgraph {
 
 Artifact WriteAudio::operator()(const Audio& audio, Context& context) const {
   const Artifact artifact = item_file(context, folder, ".wav", "sound", prefix, suffix);
-  OutputFile file(context.folder / artifact.path);
+  OutputFile file(context.file(artifact.path));
   write_audio(file.part(), audio, format);
   file.finish();
   return artifact;

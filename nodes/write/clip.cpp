@@ -42,7 +42,7 @@ Artifact WriteClip::operator()(const Video& video, const Audio* audio, Context& 
   if (audio) sound = fitted(*audio, seconds, format);
   const char* const ending = format == ClipFormat::mp4 ? ".mp4" : ".webm";
   const Artifact artifact = item_file(context, folder, ending, "clip", prefix, suffix);
-  OutputFile file(context.folder / artifact.path);
+  OutputFile file(context.file(artifact.path));
   ffmpeg_encode(file.part(), video, sound ? &*sound : nullptr, {format, crf}, context);
   file.finish();
   return artifact;

@@ -5,10 +5,10 @@
 namespace talkgraph {
 
 Artifact WriteHdf5::operator()(const Value& value, const Provenance& made, Context& context) const {
-  const std::string below = context.item.empty() ? folder : folder + "/" + made.node;
+  const auto below = std::filesystem::path(folder) / (context.item.empty() ? "" : made.node);
   const Artifact artifact = item_file(context, below, ".h5", made.node);
   const PortType& type = value.type().type;
-  write_hdf5(context.folder / artifact.path, [&](Archive& ar) {
+  write_hdf5(context.file(artifact.path), [&](Archive& ar) {
     ar.note("", "type", type.name);
     ar.note("", "type_version", type.version);
     ar.note("", "item", context.item);

@@ -34,7 +34,7 @@ Artifact WriteLabels::operator()(const PhoneTrack& phones, const WordTrack* word
   if (words && format == LabelFormat::textgrid) check(words->words, format);
   const auto write = [&](const char* ending, const std::string& text) {
     const Artifact artifact = item_file(context, folder, ending, "phones");
-    write_file(context.folder / artifact.path, text);
+    write_file(context.file(artifact.path), text);
     return artifact;
   };
   if (format == LabelFormat::htk) return write(".lab", htk_labels(phones.phones));

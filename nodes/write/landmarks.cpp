@@ -40,7 +40,7 @@ Artifact WriteLandmarks::operator()(const LandmarkTrack& landmarks, Context& con
   if (landmarks.frames.empty()) throw std::invalid_argument("the clip has no frame to write landmarks of");
   const Artifact artifact = item_file(context, folder, "", "landmarks");
   for (std::size_t t = 0; t < landmarks.frames.size(); ++t)
-    write_pts(numbered(context.folder / artifact.path, t, ".pts"), landmarks.frames[t]);
+    write_pts(numbered(context.file(artifact.path), t, ".pts"), landmarks.frames[t]);
   return artifact;
 }
 
@@ -52,8 +52,8 @@ void describe(Description<WriteLandmarks>& d) {
 
 Artifact WritePrototypes::operator()(const Prototypes& prototypes, Context& context) const {
   for (std::size_t i = 0; i < prototypes.images.size(); ++i) {
-    write_picture(numbered(context.folder / folder, i, ".png"), prototypes.images[i].pixels);
-    write_pts(numbered(context.folder / folder, i, ".pts"), prototypes.shapes.at(i));
+    write_picture(numbered(context.file(folder), i, ".png"), prototypes.images[i].pixels);
+    write_pts(numbered(context.file(folder), i, ".pts"), prototypes.shapes.at(i));
   }
   return {folder, "prototypes"};
 }

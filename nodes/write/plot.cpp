@@ -32,9 +32,9 @@ Artifact WritePlot::operator()(const Plot& plot, Context& context) const {
   const std::string path = name.empty() ? item_file(context, folder, ending, "").path
                                         : (std::filesystem::path(folder) / (name + ending)).string();
   if (format == PlotFormat::svg)
-    write_file(context.folder / path, plot.svg);
+    write_file(context.file(path), plot.svg);
   else
-    write_picture(context.folder / path, draw(plot, scale, context.folder / path));
+    write_picture(context.file(path), draw(plot, scale, context.file(path)));
   return {path, plot.title};
 }
 

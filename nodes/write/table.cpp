@@ -10,8 +10,8 @@ Artifact WriteTable::operator()(const Table& table, Context& context) const {
   const auto file = [&](const char* ending) {
     return item_file(context, context.item.empty() ? "" : name, ending, name).path;
   };
-  write_file(context.folder / file(".json"), to_json(table));
-  write_file(context.folder / file(".csv"), to_csv(table));
+  write_file(context.file(file(".json")), to_json(table));
+  write_file(context.file(file(".csv")), to_csv(table));
   return {file(".csv"), table.title.empty() ? "table" : table.title};
 }
 

@@ -10,7 +10,7 @@ Artifact WriteTrack::operator()(const Track& track, const Track* named, Context&
   Track out = track;
   if (named && std::ssize(named->names) == track.dimension()) out.names = named->names;
   Artifact file = item_file(context, folder, ".csv", "track");
-  write_file(context.folder / file.path, to_csv(out));
+  write_file(context.file(file.path), to_csv(out));
   return file;
 }
 

@@ -39,7 +39,7 @@ std::string viseme_text(const PhoneTrack& phones, VisemeFormat format, const std
 
 Artifact WriteVisemes::operator()(const PhoneTrack& phones, Context& context) const {
   const Artifact artifact = item_file(context, folder, format == VisemeFormat::tsv ? ".tsv" : ".json", "visemes");
-  write_file(context.folder / artifact.path, viseme_text(phones, format, context.item));
+  write_file(context.file(artifact.path), viseme_text(phones, format, context.item));
   return artifact;
 }
 

@@ -227,7 +227,7 @@ inline void describe(Description<Endless>& d) { d.type("toy.endless").summary("n
 struct Write {
   std::string folder = "out";
   Mark operator()(const Mark& in, Context& context) const {
-    write_file(context.folder / folder / (context.item + ".txt"), std::to_string(in.bits));
+    write_file(context.file(folder + "/" + context.item + ".txt"), std::to_string(in.bits));
     return in;
   }
 };

@@ -77,6 +77,27 @@ TEST_F(WriteText, TracksSayWhatIsNoNumber) {
   EXPECT_EQ(read("tracks/track.csv"), "d0,d1,d2\nnan,inf,1e-300\n");
 }
 
+TEST_F(WriteText, StaysBelowTheRunFolder) {
+  context.folder = folder.path() / "run/below";
+  const auto complaint = [&](const std::string& below, const std::string& item) {
+    context.item = item;
+    try {
+      WriteTrack{below}(Track{}, nullptr, context);
+    } catch (const std::invalid_argument& e) {
+      return std::string(e.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_THAT(complaint("../out", "a"), HasSubstr("\"../out/a.csv\" is not below the run folder"));
+  EXPECT_THAT(complaint("x/../../../out", "a"), HasSubstr("is not below the run folder"));
+  EXPECT_THAT(complaint(folder.file("out"), "a"), HasSubstr("out/a.csv\" is not below the run folder"));
+  EXPECT_THAT(complaint("out", "../../a"), HasSubstr("is not below the run folder"));
+  EXPECT_THAT(complaint("out", "/a"), HasSubstr("\"/a.csv\" is not below the run folder"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_EQ(complaint("..out", "a..b"), "none");
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "run/below/..out/a..b.csv"));
+}
+
 TEST_F(WriteText, SaysWhichFileCannotBeWritten) {
   context.folder = folder.write("in_the_way", "x");
   try {
