@@ -294,6 +294,8 @@ void Caller::compute(Station& station) {
   if (type.uses_random) station.random = Random(graph_.seed, type.name, station.context.item);
   const Watch watch(*this, station);
   station.books.calls += 1;
+  if (keeper_ && keeper_->keeps(n))
+    for (auto* o : options_.observers) o->missed(n, station.context.item);
   try {
     if (writes(type) || (keeper_ && keeper_->keeps(n)))
       call_and_keep(station);

@@ -68,6 +68,8 @@ class RunObserver {
   virtual void call_ended(int /*node*/, const std::string& /*item*/) {}
   /// The call at hand found its result in the cache; told before it ends.
   virtual void loaded(int /*node*/, const std::string& /*item*/) {}
+  /// The call at hand looked for its result in the cache in vain; told before it is computed.
+  virtual void missed(int /*node*/, const std::string& /*item*/) {}
   /// The node is done with an item: called, skipped or failed. For a source: an item made.
   virtual void item_done(int /*node*/, const std::string& /*item*/) {}
   /// What a node tells through its Context.

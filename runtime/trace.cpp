@@ -17,18 +17,25 @@ int Trace::thread() { return threads_.emplace(pthread_self(), static_cast<int>(t
 
 void Trace::call_started(int node, const std::string& item) {
   const std::lock_guard lock(mutex_);
-  open_[{node, item}] = {now(), false};
+  open_[{node, item}] = {now()};
 }
 
 void Trace::loaded(int node, const std::string& item) {
   const std::lock_guard lock(mutex_);
-  open_[{node, item}].loaded = true;
+  open_[{node, item}].cache = "hit";
+}
+
+void Trace::missed(int node, const std::string& item) {
+  const std::lock_guard lock(mutex_);
+  open_[{node, item}].cache = "miss";
 }
 
 void Trace::call_ended(int node, const std::string& item) {
   const std::lock_guard lock(mutex_);
   const auto call = open_.find({node, item});
   if (call == open_.end()) return;
+  Json args = {{"item", item}};
+  if (call->second.cache) args["cache"] = call->second.cache;
   events_.push_back({{"name", graph_->nodes[static_cast<std::size_t>(node)].name},
                      {"cat", graph_->nodes[static_cast<std::size_t>(node)].type->name},
                      {"ph", "X"},
@@ -36,7 +43,7 @@ void Trace::call_ended(int node, const std::string& item) {
                      {"tid", thread()},
                      {"ts", call->second.start},
                      {"dur", now() - call->second.start},
-                     {"args", {{"item", item}, {"cache", call->second.loaded ? "hit" : "miss"}}}});
+                     {"args", std::move(args)}});
   open_.erase(call);
 }
 

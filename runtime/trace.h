@@ -11,8 +11,9 @@
 
 namespace talkgraph {
 
-/// Records a run for the trace viewers of Perfetto and Chrome: each call with its node, item, thread and whether it was
-/// found in the cache, and the number of items that wait before each node. Written when the run ends, whichever way.
+/// Records a run for the trace viewers of Perfetto and Chrome: each call with its node, item, thread and, if it was
+/// looked for in the cache, whether it was there, and the number of items that wait before each node. Written when the
+/// run ends, whichever way.
 class Trace : public RunObserver {
  public:
   explicit Trace(std::filesystem::path file) : file_(std::move(file)) {}
@@ -21,6 +22,7 @@ class Trace : public RunObserver {
   void call_started(int node, const std::string& item) override;
   void call_ended(int node, const std::string& item) override;
   void loaded(int node, const std::string& item) override;
+  void missed(int node, const std::string& item) override;
   void item_done(int node, const std::string& item) override;
   void ended(const RunReport& report) override;
 
@@ -28,7 +30,7 @@ class Trace : public RunObserver {
   using Clock = std::chrono::steady_clock;
   struct Call {
     double start = 0;
-    bool loaded = false;
+    const char* cache = nullptr;  // "hit" or "miss", if its result was looked for
   };
 
   double now() const { return std::chrono::duration<double, std::micro>(Clock::now() - start_).count(); }

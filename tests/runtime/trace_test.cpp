@@ -22,12 +22,13 @@ TEST(Trace, TellsOfEveryCallAndOfWhatWaits) {
     registry.add(type);
   }
   GraphBuilder b(registry);
-  b.output("all", b.add("map", "toy.map", {b.add("source", "toy.source", {}, {{"to", 5}})}));
+  const int map = b.add("map", "toy.map", {b.add("source", "toy.source", {}, {{"to", 5}})});
+  b.output("all", b.add("train", "toy.train", {map}));
   Cache cache(folder.path() / "cache");
-  const auto events = [&](const std::string& name) {
+  const auto events = [&](const std::string& name, Cache* kept) {
     Trace trace(folder.path() / name);
     RunOptions options;
-    options.cache = &cache;
+    options.cache = kept;
     options.observers = {&trace};
     run(b.graph, options);
     return Json::parse(folder.read(name))["traceEvents"];
@@ -35,9 +36,11 @@ TEST(Trace, TellsOfEveryCallAndOfWhatWaits) {
   for (const char* cached : {"miss", "hit"}) {
     std::set<std::string> items;
     std::size_t counters = 0;
-    for (const auto& e : events(cached)) {
+    for (const auto& e : events(cached, &cache)) {
       if (e["ph"] == "C") ++counters;
-      if (e["ph"] != "X" || e["name"] != "map") continue;
+      if (e["ph"] != "X") continue;
+      EXPECT_EQ(e["args"].contains("cache"), e["name"] == "map") << "only its results are kept";
+      if (e["name"] != "map") continue;
       EXPECT_EQ(e["args"]["cache"], cached);
       EXPECT_GE(e["dur"], 0.0);
       EXPECT_GE(e["tid"], 1);
@@ -46,6 +49,8 @@ TEST(Trace, TellsOfEveryCallAndOfWhatWaits) {
     EXPECT_EQ(items, (std::set<std::string>{"u0", "u1", "u2", "u3", "u4"}));
     EXPECT_EQ(counters, 5u);
   }
+  for (const auto& e : events("plain", nullptr))
+    EXPECT_FALSE(e["ph"] == "X" && e["args"].contains("cache")) << "there is none";
 }
 
 }  // namespace
