@@ -88,8 +88,14 @@ class Crew {
     return options_.threads / std::max(1, beside);
   }
 
+  /// Trials go on where the listener fails, on a full disk for one; that is told once.
   void tell(std::size_t trial) {
-    if (options_.on_change) options_.on_change(trial, results_[trial]);
+    if (!options_.on_change) return;
+    try {
+      options_.on_change(trial, results_[trial]);
+    } catch (const std::exception& e) {
+      if (!std::exchange(warned_, true) && options_.on_warning) options_.on_warning(trial, e.what());
+    }
   }
 
   TrialResult run_trial(std::size_t trial, int threads) {
@@ -153,6 +159,7 @@ class Crew {
   std::condition_variable_any pause_;
   std::size_t next_ = 0, ended_ = 0;
   int working_ = 0;
+  bool warned_ = false;
   std::uint64_t each_ = 0;  // bytes
 };
 

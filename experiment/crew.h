@@ -14,7 +14,7 @@ struct CrewOptions {
   Cache* cache = nullptr;        ///< shared by all; none: all is computed
   std::filesystem::path folder;  ///< trials write to <folder>/trials/<name>
   const std::atomic<bool>* cancel = nullptr;
-  /// Told, one at a time, as a trial starts (status "not run") and when it has ended.
+  /// Told, one at a time, as a trial starts (status "not run") and when it has ended. If it throws, that is a warning.
   std::function<void(std::size_t trial, const TrialResult& result)> on_change;
   /// Told of what a trial warns of.
   std::function<void(std::size_t trial, std::string_view message)> on_warning;

@@ -134,6 +134,15 @@ TEST_F(CrewTest, ATightMemoryBudgetRunsOneAtATime) {
   EXPECT_EQ(most, 1);
 }
 
+TEST_F(CrewTest, AListenerThatFailsIsToldOfOnceAndStopsNothing) {
+  CrewOptions options;
+  options.on_change = [](std::size_t, const TrialResult&) { throw std::runtime_error("the disk is full"); };
+  std::string warnings;
+  options.on_warning = [&](std::size_t, std::string_view message) { warnings += message; };
+  for (const auto& r : run(R"("vary": { "scale": [1, 2, 3] })", options)) EXPECT_EQ(r.status, Status::finished);
+  EXPECT_EQ(warnings, "the disk is full");
+}
+
 TEST_F(CrewTest, AnOldFolderOfAnotherGraphLeavesNothingBehind) {
   run(R"("vary": { "scale": [1] })");
   folder_.write("out/trials/scale=1/pictures/old.svg", "old");
