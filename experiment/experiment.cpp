@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "graph/draft.h"
@@ -23,6 +24,15 @@ constexpr std::size_t longest_name = 80;
 
 const std::vector<std::string> file_keys = {"$schema", "description", "graph",    "set",  "vary",
                                             "repeats", "seeds",       "tabulate", "plot", "show"};
+
+/// Columns of the results, which no factor can be called.
+const std::set<std::string> result_columns = {"trial", "seed", "status", "output", "item", "row", "measure",
+                                              "value", "n",    "over",   "mean",   "low",  "high"};
+
+/// A parameter of the graph by its whole path, so that it is the same however it is named.
+std::string whole_path(const std::string& path) {
+  return path.find('.') == std::string::npos && path != "seed" ? "parameters." + path + ".default" : path;
+}
 
 /// What varies at a time: each level changes the graph and gives a cell to each column.
 struct Axis {
@@ -63,6 +73,7 @@ class Reader {
     if (out.tabulate.names.empty())
       diagnostics_.error(json.place,
                          "experiment: \"tabulate\" must name outputs of the graph that are tables or scores");
+    if (const auto* vary = json.find("vary")) out.vary = vary->key_place;
     const auto* set = json.find("set");
     lay_out(set ? changes_of(set->value, "experiment: \"set\"") : std::vector<Change>{}, axes(json), seeds(json),
             json.place, out);
@@ -118,9 +129,40 @@ class Reader {
         if (!seen.insert(Json(level.cells).dump()).second)
           diagnostics_.error(m.value.place,
                              fmt::format("\"{}\" has the value {} twice", m.key, fmt::join(texts(level.cells), ", ")));
+      check_names(axis, m.key_place);
+      check_paths(axis, m);
       all.push_back(std::move(axis));
     }
     return all;
+  }
+
+  void check_names(const Axis& axis, const Place& place) {
+    for (const auto& column : axis.columns)
+      if (result_columns.contains(column))
+        diagnostics_.error(place, fmt::format("results have a column \"{}\" already: {}", column,
+                                              column == "seed" ? "name seeds in \"seeds\", beside \"vary\""
+                                                               : "give the factor another name, and its \"path\""));
+      else if (!columns_.insert(column).second)
+        diagnostics_.error(place, fmt::format("two factors are called \"{}\"", column));
+  }
+
+  /// What two factors set, only the second one would.
+  void check_paths(const Axis& axis, const LocatedJson::Member& factor) {
+    std::set<std::string> own, twice;
+    for (const auto& level : axis.levels) {
+      std::set<std::string> of_level;
+      for (const auto& change : level.changes) {
+        const std::string path = whole_path(change.path);
+        if (!of_level.insert(path).second || paths_.contains(path)) twice.insert(change.path);
+      }
+      own.merge(of_level);
+    }
+    for (const auto& path : twice)
+      diagnostics_.error(factor.key_place,
+                         fmt::format("\"{}\" sets \"{}\", which is set twice then", factor.key, path));
+    if (own.contains("seed") && factor.key != "seed")
+      diagnostics_.error(factor.key_place, fmt::format("\"{}\" sets the seed: name seeds in \"seeds\"", factor.key));
+    paths_.merge(own);
   }
 
   static std::vector<std::string> texts(const std::vector<Json>& cells) {
@@ -285,7 +327,21 @@ class Reader {
   }
 
   Diagnostics& diagnostics_;
+  std::set<std::string> columns_, paths_;  ///< of the factors so far
 };
+
+/// Two trials that would do the same.
+void check_distinct(const Experiment& experiment, const std::vector<Graph>& graphs, Diagnostics& diagnostics) {
+  std::map<Key, std::size_t> seen;
+  for (std::size_t t = 0; t < graphs.size(); ++t) {
+    const auto [first, is_new] = seen.emplace(KeyMaker().add(graphs[t].resolved.dump()).key(), t);
+    if (!is_new)
+      return diagnostics.error(experiment.vary,
+                               fmt::format("the runs \"{}\" and \"{}\" are the same: what differs "
+                                           "between them does not change the graph",
+                                           experiment.trials[first->second].name, experiment.trials[t].name));
+  }
+}
 
 /// Complaints about what is to be tabulated and shown.
 void check_outputs(const Experiment& experiment, const Graph& graph, Diagnostics& diagnostics) {
@@ -342,6 +398,7 @@ std::optional<std::vector<Graph>> load_trials(const Experiment& experiment, cons
         diagnostics.error(m.place, m.text);
     if (graph) graphs.push_back(*std::move(graph));
   }
+  if (diagnostics.ok()) check_distinct(experiment, graphs, diagnostics);
   if (!diagnostics.ok()) return {};
   return graphs;
 }

@@ -139,6 +139,34 @@ TEST_F(ExperimentFile, MistakesAreLocated) {
   EXPECT_THAT(complaint(R"("repeats": 5000, "vary": { "scale": [1, 2, 3] })"), HasSubstr("15000 runs"));
 }
 
+TEST_F(ExperimentFile, FactorsDoNotCollide) {
+  EXPECT_THAT(complaint(R"("vary": { "seed": [1, 2] })"), HasSubstr("e.json:1:60: error: results have a column "
+                                                                    "\"seed\" already: name seeds in \"seeds\""));
+  EXPECT_THAT(complaint(R"("vary": { "seed": [1, 2] }, "repeats": 2)"), HasSubstr("name seeds in \"seeds\""));
+  EXPECT_THAT(complaint(R"("vary": { "s": { "path": "seed", "values": [1, 2] } })"), HasSubstr("sets the seed"));
+  EXPECT_THAT(complaint(R"("vary": { "k": { "levels": { "a": { "seed": 1 }, "b": {} } } })"),
+              HasSubstr("sets the seed"));
+  EXPECT_THAT(complaint(R"("vary": { "measure": { "path": "scale", "values": [1] } })"),
+              HasSubstr("results have a column \"measure\" already: give the factor another name"));
+  EXPECT_THAT(complaint(R"("vary": { "s": { "path": "scale", "values": [1] }, "scale": [1, 2] })"),
+              HasSubstr("\"scale\" sets \"scale\", which is set twice then"));
+  EXPECT_THAT(complaint(R"("vary": { "parameters.scale.default": [1, 2], "scale": [1, 2] })"), HasSubstr("set twice"));
+  EXPECT_THAT(complaint(R"("vary": { "scale": [1], "pair": { "together": { "scale": [1], "offset": [2] } } })"),
+              HasSubstr("two factors are called \"scale\""));
+  EXPECT_THAT(complaint(R"("vary": { "p": { "together": { "scale": [1], "parameters.scale.default": [2] } } })"),
+              HasSubstr("set twice"));
+  EXPECT_THAT(complaint(R"("vary": { "a": { "levels": { "x": { "scale": 1 } } }, "scale": [1, 2] })"),
+              HasSubstr("set twice"));
+}
+
+TEST_F(ExperimentFile, NoTwoRunsAreTheSame) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(load_trials(sound(R"("vary": { "nodes.score.params.scale": [1], "scale": [2, 3] })"),
+                           test::scored_registry(), {}, diagnostics));
+  EXPECT_THAT(diagnostics.str(), HasSubstr("e.json:1:50: error: the runs \"scale=1,scale=2\" and "
+                                           "\"scale=1,scale=3\" are the same"));
+}
+
 TEST_F(ExperimentFile, NeedsAGraphAndSomethingToTabulate) {
   Diagnostics diagnostics;
   EXPECT_FALSE(load_experiment(folder_.write("x.json", "{}"), diagnostics));
@@ -150,7 +178,8 @@ TEST_F(ExperimentFile, NeedsAGraphAndSomethingToTabulate) {
 }
 
 TEST_F(ExperimentFile, MayExtendAnother) {
-  folder_.write("base.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "plot": ["acc"], "set": { "nodes.a": 1 },
+  folder_.write("base.json",
+                R"({ "graph": "graph.json", "tabulate": ["scores"], "plot": ["acc"], "set": { "nodes.a": 1 },
     "vary": { "scale": [1, 2] } })");
   const auto file = folder_.write("grid/more.json", R"({ "extends": "../base.json", "plot": null, "repeats": 2,
     "set": { "nodes.b": 2 } })");
