@@ -59,6 +59,9 @@ class TokenPlaces {
   int line_ = 1;
 };
 
+/// Lists and objects within each other; whatever walks through them recurses.
+constexpr std::size_t deepest = 200;
+
 class Builder final : public nlohmann::json_sax<Json> {
  public:
   Builder(std::shared_ptr<const SourceText> source, Diagnostics& diagnostics)
@@ -108,6 +111,10 @@ class Builder final : public nlohmann::json_sax<Json> {
     return true;
   }
   bool open(LocatedJson::Kind kind) {
+    if (stack_.size() == deepest) {
+      diagnostics_.error(places_.next(), fmt::format("more than {} lists and objects within each other", deepest));
+      return false;
+    }
     LocatedJson& s = slot();
     s.kind = kind;
     s.place = places_.next();

@@ -452,9 +452,9 @@ std::optional<Change> parse_set(const std::string& set, Diagnostics& diagnostics
   if (equals == std::string::npos || equals == 0)
     return diagnostics.error(place, "--set takes path=value, such as nodes.mfcc.params.filters=20"), std::nullopt;
   const std::string text = set.substr(equals + 1);
-  Json value = Json::parse(text, nullptr, false);
-  if (value.is_discarded()) value = text;
-  return Change{set.substr(0, equals), located(value, place)};
+  Diagnostics not_json;
+  const auto value = parse_json(std::make_shared<SourceText>(SourceText{"--set", text}), not_json);
+  return Change{set.substr(0, equals), located(not_json.ok() ? value->plain() : Json(text), place)};
 }
 
 }  // namespace
