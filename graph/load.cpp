@@ -324,6 +324,9 @@ class Loader {
                                                         did_you_mean(name, registry_.names())));
     auto* params = entry.json.find("params");
     if (params) embed_graphs(*known, params->value);
+    if (std::any_of(draft.nodes.begin(), draft.nodes.end(),
+                    [&](const auto& made) { return made.name == scope.prefix + member.key; }))
+      diagnostics_.error(member.key_place, subject + " stands twice: here and in a graph used as a node");
     entry.node = static_cast<int>(draft.nodes.size());
     draft.nodes.push_back({scope.prefix + member.key, known,
                            known->make(params ? &params->value : nullptr, member.key_place, subject, diagnostics_),
