@@ -163,7 +163,7 @@ class Connector {
     }
     if (!scope.parent) return root_input(name);
     const auto* given = scope.in ? scope.in->find(name) : nullptr;
-    if (!given) return {true, {}};
+    if (!given || given->value.is(Kind::null)) return {true, {}};
     const Source source = resolve(*scope.parent, given->value, subject, depth + 1);
     if (source.port) check_declared(*input, *source.port, given->value);
     return source;

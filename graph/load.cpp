@@ -166,7 +166,9 @@ bool can_be_taken_away(const std::vector<std::string>& path) {
 /// nothing.
 void apply(const Setting& setting, LocatedJson& graph, const std::string& where, Diagnostics& diagnostics) {
   const auto& [path, value] = setting;
+  const bool takes_away = value.is(Kind::null) && can_be_taken_away(path);
   LocatedJson *at = &graph, *parent = nullptr;
+  bool there = true;
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (!at->is(Kind::object))
       return diagnostics.error(value.place, fmt::format("nothing can be set below \"{}\"", path[i - 1]));
@@ -175,7 +177,11 @@ void apply(const Setting& setting, LocatedJson& graph, const std::string& where,
     if (!member && !may_add)
       return diagnostics.error(value.place, fmt::format("there is no \"{}\"{} to set{}", path[i], where,
                                                         did_you_mean(path[i], keys_of(*at))));
-    if (!member) {
+    there = member != nullptr;
+    if (!there && takes_away && path.size() == 2)
+      return diagnostics.error(value.place, fmt::format("there is no \"{}\"{} to take away{}", path[i], where,
+                                                        did_you_mean(path[i], keys_of(*at))));
+    if (!there) {
       LocatedJson empty;
       empty.kind = Kind::object;
       empty.place = value.place;
@@ -185,7 +191,8 @@ void apply(const Setting& setting, LocatedJson& graph, const std::string& where,
     parent = at;
     at = &member->value;
   }
-  if (value.is(Kind::null) && can_be_taken_away(path))
+  // Of an input that has no wire the null stays, so that the node is asked whether it has such an input.
+  if (takes_away && there)
     std::erase_if(parent->members, [&](const LocatedJson::Member& m) { return m.key == path.back(); });
   else
     *at = value;
@@ -391,7 +398,8 @@ class Loader {
     const auto& declared = members_of(inner.json, "inputs");
     for (const auto& d : declared) {
       const auto type = declared_input(d.value, registry_, diagnostics_);
-      if (type && !type->optional && !(inner.in && inner.in->find(d.key)))
+      const auto* given = inner.in ? inner.in->find(d.key) : nullptr;
+      if (type && !type->optional && (!given || given->value.is(Kind::null)))
         diagnostics_.error(member.key_place,
                            fmt::format("{}: input \"{}\" ({}) is not wired", subject, d.key, type->type));
     }

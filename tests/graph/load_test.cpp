@@ -101,6 +101,37 @@ TEST_F(Load, NullTakesNodesWiresAndOutputsAway) {
   expect_error(text, "g.json:2:93", "there is no node \"b\"", {"nodes.b=null"});
 }
 
+TEST_F(Load, WhatNullTakesAwayIsThere) {
+  write("inner.json", R"({ "inputs": { "x": "Number", "extra": { "type": "Number", "optional": true } },
+    "nodes": { "s": { "type": "toy.add", "in": { "a": "inputs.x", "b": "inputs.extra" } } }, "outputs": { "y": "s" } })");
+  const std::string text = R"({ "nodes": { "items": { "type": "toy.count" },
+    "sum": { "type": "toy.add", "in": { "a": "items" } },
+    "f": { "graph": "inner.json", "in": { "x": "items" } } }, "outputs": { "x": "sum", "y": "f" } })";
+  expect_error(text, "--set:1:1", "there is no \"smu\" to take away (did you mean \"sum\"?)", {"nodes.smu=null"});
+  expect_error(text, "--set:1:1", "there is no \"z\" to take away (did you mean", {"outputs.z=null"});
+  expect_error(text, "--set:1:1", "toy.add has no input \"c\"", {"nodes.sum.in.c=null"});
+  expect_error(text, "--set:1:1", "unknown input \"extar\" (did you mean \"extra\"?)", {"nodes.f.in.extar=null"});
+  expect_error(text, "g.json:3:5", "input \"x\" (Number) is not wired", {"nodes.f.in.x=null"});
+  const auto open = load(text, {"nodes.sum.in.b=null", "nodes.f.in.extra=null"});
+  EXPECT_TRUE(open) << diagnostics.str();
+}
+
+TEST_F(Load, NoTwoNodesHaveOneName) {
+  write("inner.json", R"({ "nodes": { "b": { "type": "toy.constant" } }, "outputs": { "y": "b" } })");
+  expect_error(R"({ "nodes": { "a": { "graph": "inner.json" }, "a/b": { "type": "toy.constant" } },
+    "outputs": { "x": "a", "y": "a/b" } })",
+               "g.json:1:46", "node \"a/b\" stands twice: here and in a graph used as a node");
+}
+
+TEST_F(Load, RefusesWhatIsNestedTooDeeply) {
+  const std::string open(200'000, '[');
+  expect_error(open, "g.json:1:201", "more than 200 lists and objects within each other");
+  expect_error(R"({ "nodes": { "a": {"type": "toy.constant", "params": { "x": )" + open, "g.json:1:257",
+               "more than 200");
+  expect_error(R"({ "nodes": { "a": { "type": "toy.constant" } }, "outputs": { "x": "a" } })", "--set:1:1",
+               "must be a number", {"nodes.a.params.x=" + open.substr(0, 300) + std::string(300, ']')});
+}
+
 TEST_F(Load, SetsParametersAndPaths) {
   auto graph = load(train_then_apply, {"n=7"});
   ASSERT_TRUE(graph) << diagnostics.str();
