@@ -26,8 +26,8 @@ const std::vector<std::string> file_keys = {"$schema", "description", "graph",  
                                             "repeats", "seeds",       "tabulate", "plot", "show"};
 
 /// Columns of the results, which no factor can be called.
-const std::set<std::string> result_columns = {"trial", "seed", "status", "output", "item", "row", "measure",
-                                              "value", "n",    "over",   "mean",   "low",  "high"};
+const std::set<std::string> result_columns = {"trial", "seed", "status", "output",  "item", "row", "measure",
+                                              "value", "n",    "over",   "partial", "mean", "low", "high"};
 
 /// A parameter of the graph by its whole path, so that it is the same however it is named.
 std::string whole_path(const std::string& path) {
@@ -60,12 +60,11 @@ class Reader {
     Experiment out;
     if (!detail::expect_object(json, "an experiment", diagnostics_)) return out;
     detail::check_keys(json, file_keys, "experiment", diagnostics_);
-    FilePath graph;
-    if (json.find("graph"))
-      read_member(json, "graph", graph);
-    else
+    if (const auto* graph = json.find("graph")) {
+      if (const auto text = detail::read_graph(graph->value, diagnostics_)) out.graph = text->name;
+    } else {
       diagnostics_.error(json.place, "experiment: \"graph\" must name the graph that is run");
-    out.graph = graph.path;
+    }
     read_member(json, "description", out.description);
     read_member(json, "plot", out.plot);
     out.tabulate = outputs(json, "tabulate");
@@ -74,6 +73,8 @@ class Reader {
       diagnostics_.error(json.place,
                          "experiment: \"tabulate\" must name outputs of the graph that are tables or scores");
     if (const auto* vary = json.find("vary")) out.vary = vary->key_place;
+    for (const char* key : {"repeats", "seeds"})
+      if (const auto* m = json.find(key)) out.repeats = m->key_place;
     const auto* set = json.find("set");
     lay_out(set ? changes_of(set->value, "experiment: \"set\"") : std::vector<Change>{}, axes(json), seeds(json),
             json.place, out);
@@ -91,6 +92,8 @@ class Reader {
     NamedOutputs out;
     read_member(json, key, out.names);
     if (const auto* m = json.find(key)) out.place = m->value.place;
+    if (std::set(out.names.begin(), out.names.end()).size() < out.names.size())
+      diagnostics_.error(out.place, fmt::format("experiment: \"{}\" names an output twice", key));
     return out;
   }
 
@@ -343,6 +346,16 @@ void check_distinct(const Experiment& experiment, const std::vector<Graph>& grap
   }
 }
 
+/// Repeats that would all give the same, which would look like certainty.
+void check_repeats(const Experiment& experiment, const std::vector<Graph>& graphs, Diagnostics& diagnostics) {
+  const auto draws = [](const Graph& graph) {
+    return std::any_of(graph.nodes.begin(), graph.nodes.end(), [](const auto& node) { return node.type->uses_random; });
+  };
+  if (experiment.trials.size() > experiment.settings && std::none_of(graphs.begin(), graphs.end(), draws))
+    diagnostics.error(experiment.repeats,
+                      "repeats with other seeds would all give the same: no node of the graph draws random numbers");
+}
+
 /// Complaints about what is to be tabulated and shown.
 void check_outputs(const Experiment& experiment, const Graph& graph, Diagnostics& diagnostics) {
   const auto check = [&](const NamedOutputs& outputs, const std::vector<std::string_view>& types, const char* what) {
@@ -398,7 +411,10 @@ std::optional<std::vector<Graph>> load_trials(const Experiment& experiment, cons
         diagnostics.error(m.place, m.text);
     if (graph) graphs.push_back(*std::move(graph));
   }
-  if (diagnostics.ok()) check_distinct(experiment, graphs, diagnostics);
+  if (diagnostics.ok()) {
+    check_repeats(experiment, graphs, diagnostics);
+    check_distinct(experiment, graphs, diagnostics);
+  }
   if (!diagnostics.ok()) return {};
   return graphs;
 }

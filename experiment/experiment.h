@@ -30,7 +30,7 @@ struct Experiment {
   std::string name;  ///< of the file, without its ending
   std::string description;
   std::filesystem::path graph;
-  Place vary;                        ///< where the factors stand
+  Place vary, repeats;               ///< where the factors stand, and the seeds
   std::vector<std::string> factors;  ///< what varies
   std::vector<Trial> trials;
   std::size_t settings = 1;

@@ -55,6 +55,9 @@ struct DeclaredInput {
 std::optional<DeclaredInput> declared_input(const LocatedJson& json, const Registry& registry,
                                             Diagnostics& diagnostics);
 
+/// The text of the graph whose file is named; nothing if that cannot be read.
+std::shared_ptr<const SourceText> read_graph(const LocatedJson& file, Diagnostics& diagnostics);
+
 /// A graph or an experiment; where it extends another file, that one with this one laid over it. `open` names the files
 /// that lead here, so that none extends itself.
 std::optional<LocatedJson> parse_extended(std::shared_ptr<const SourceText> text, std::vector<std::string>& open,

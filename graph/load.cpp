@@ -103,20 +103,6 @@ std::string nearby_graphs(const std::filesystem::path& file) {
   return did_you_mean(file.filename().string(), names);
 }
 
-std::shared_ptr<const SourceText> read_graph(const LocatedJson& file, Diagnostics& diagnostics) {
-  FilePath path;
-  if (!file.is(Kind::text)) {
-    diagnostics.error(file.place, fmt::format("a graph is named by its file, got {}", file.kind_name()));
-    return nullptr;
-  }
-  read_path(file, path, "graph", diagnostics);
-  auto text = read_text_file(path.path);
-  if (!text)
-    diagnostics.error(file.place,
-                      fmt::format("unknown graph: {} cannot be read{}", path.path, nearby_graphs(path.path)));
-  return text;
-}
-
 /// Lays a patch over a value (JSON merge patch, RFC 7396): members are merged, null takes one away, all else replaces.
 /// What is taken away must be there.
 void merge(LocatedJson& base, const LocatedJson& patch, const std::string& at, Diagnostics& diagnostics) {
@@ -469,6 +455,20 @@ std::optional<Change> parse_set(const std::string& set, Diagnostics& diagnostics
 }
 
 }  // namespace
+
+std::shared_ptr<const SourceText> read_graph(const LocatedJson& file, Diagnostics& diagnostics) {
+  FilePath path;
+  if (!file.is(Kind::text)) {
+    diagnostics.error(file.place, fmt::format("a graph is named by its file, got {}", file.kind_name()));
+    return nullptr;
+  }
+  read_path(file, path, "graph", diagnostics);
+  auto text = read_text_file(path.path);
+  if (!text)
+    diagnostics.error(file.place,
+                      fmt::format("unknown graph: {} cannot be read{}", path.path, nearby_graphs(path.path)));
+  return text;
+}
 
 std::optional<LocatedJson> parse_extended(std::shared_ptr<const SourceText> text, std::vector<std::string>& open,
                                           Diagnostics& diagnostics) {

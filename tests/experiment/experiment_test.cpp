@@ -136,6 +136,8 @@ TEST_F(ExperimentFile, MistakesAreLocated) {
   EXPECT_THAT(complaint(R"("vary": { "k": { "levels": { "a": 1 } } })"), HasSubstr("level \"a\" must be an object"));
   EXPECT_THAT(complaint(R"("repeats": 2, "seeds": [1])"), HasSubstr("either \"repeats\" or \"seeds\""));
   EXPECT_THAT(complaint(R"("seeds": [1, 1])"), HasSubstr("the same seed twice"));
+  EXPECT_THAT(complaint(R"("show": ["files", "files"])"),
+              HasSubstr("1:58: error: experiment: \"show\" names an output twice"));
   EXPECT_THAT(complaint(R"("repeats": 5000, "vary": { "scale": [1, 2, 3] })"), HasSubstr("15000 runs"));
 }
 
@@ -165,6 +167,24 @@ TEST_F(ExperimentFile, NoTwoRunsAreTheSame) {
                            test::scored_registry(), {}, diagnostics));
   EXPECT_THAT(diagnostics.str(), HasSubstr("e.json:1:50: error: the runs \"scale=1,scale=2\" and "
                                            "\"scale=1,scale=3\" are the same"));
+}
+
+TEST_F(ExperimentFile, RepeatsThatChangeNothingAreRefused) {
+  folder_.write("graph.json",
+                R"({ "nodes": { "items": { "type": "test.items" } }, "outputs": { "scores": "items" } })");
+  Diagnostics diagnostics;
+  EXPECT_FALSE(load_trials(sound(R"("repeats": 3)"), test::scored_registry(), {}, diagnostics));
+  EXPECT_THAT(diagnostics.str(), HasSubstr("e.json:1:50: error: repeats with other seeds would all give the same"));
+  Diagnostics one;
+  EXPECT_TRUE(load_trials(sound(R"("seeds": [3])"), test::scored_registry(), {}, one)) << one.str();
+}
+
+TEST_F(ExperimentFile, AGraphThatIsNotThereIsToldOfWithItsPlace) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(
+      load_experiment(folder_.write("x.json", R"({ "graph": "grap.json", "tabulate": ["scores"] })"), diagnostics));
+  EXPECT_THAT(diagnostics.str(), HasSubstr("x.json:1:12: error: unknown graph"));
+  EXPECT_THAT(diagnostics.str(), HasSubstr("(did you mean \"graph.json\"?)"));
 }
 
 TEST_F(ExperimentFile, NeedsAGraphAndSomethingToTabulate) {
