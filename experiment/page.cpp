@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -32,13 +33,22 @@ const Trial& first_of(const Experiment& experiment, std::size_t setting) {
                        [&](const Trial& t) { return t.setting == setting; });
 }
 
-/// "latent 2, filters 20", without the factor `except`.
+/// Whether a text level says by itself of which factor it is.
+bool stands_alone(const Experiment& experiment, std::size_t factor, const Json& level) {
+  if (!level.is_string()) return false;
+  for (const auto& trial : experiment.trials)
+    for (std::size_t f = 0; f < trial.levels.size(); ++f)
+      if (f != factor && text_of(trial.levels[f]) == text_of(level)) return false;
+  return true;
+}
+
+/// "latent 2, MFCC", without the factor `except`.
 std::string setting_text(const Experiment& experiment, std::size_t setting, std::optional<std::size_t> except = {}) {
   std::vector<std::string> parts;
   const auto& levels = first_of(experiment, setting).levels;
   for (std::size_t f = 0; f < levels.size(); ++f)
     if (f != except)
-      parts.push_back(levels[f].is_string() ? text_of(levels[f]) : experiment.factors[f] + " " + text_of(levels[f]));
+      parts.push_back((stands_alone(experiment, f, levels[f]) ? "" : experiment.factors[f] + " ") + text_of(levels[f]));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -133,8 +143,10 @@ std::string table(const std::string& caption, const std::vector<std::string>& he
 double shown_number(double v) { return std::abs(v) < 1e-12 ? 0 : v; }
 
 std::string number_text(const Estimate& e) {
-  return std::isnan(e.half_width) ? fmt::format("{:.4g}", shown_number(e.mean))
-                                  : fmt::format("{:.3g} ± {:.2g}", shown_number(e.mean), shown_number(e.half_width));
+  const std::string text = std::isnan(e.half_width)
+                               ? fmt::format("{:.4g}", shown_number(e.mean))
+                               : fmt::format("{:.3g} ± {:.2g}", shown_number(e.mean), shown_number(e.half_width));
+  return e.partial ? text + " *" : text;
 }
 
 std::string score_table(const Experiment& experiment, const OutputEstimates& estimates) {
@@ -275,6 +287,16 @@ std::vector<Plot> plot_estimates(const Experiment& experiment, const std::vector
   return plots;
 }
 
+std::vector<std::string> missing_measures(const Experiment& experiment, const std::vector<Estimate>& estimates) {
+  std::vector<std::string> known, missing;
+  for (const auto& e : estimates) add_once(known, e.measure);
+  if (known.empty()) return {};
+  for (const auto& measure : experiment.plot)
+    if (std::find(known.begin(), known.end(), measure) == known.end())
+      missing.push_back(fmt::format("There is no measure \"{}\" to plot{}.", measure, did_you_mean(measure, known)));
+  return missing;
+}
+
 std::string experiment_page(const Experiment& experiment, const std::vector<Graph>& graphs,
                             const std::vector<TrialResult>& results) {
   const auto estimates = estimate(experiment, results);
@@ -286,9 +308,28 @@ std::string experiment_page(const Experiment& experiment, const std::vector<Grap
       "<a href=\"results.json\">results.json</a>; means: <a href=\"means.csv\">means.csv</a>.</p>\n",
       finished, results.size(), escape_markup(experiment.graph.filename().string()));
   if (!estimates.empty()) page += "<h2>Scores</h2>\n<p>" + interval_note(estimates) + "</p>\n";
+  if (std::any_of(estimates.begin(), estimates.end(), [](const Estimate& e) { return e.partial; }))
+    page += "<p>* Without items that failed: see the runs below.</p>\n";
+  for (const auto& missing : missing_measures(experiment, estimates)) page += "<p>" + escape_markup(missing) + "</p>\n";
   for (const auto& of_output : by_output(estimates)) page += score_table(experiment, of_output);
   for (const auto& plot : plot_estimates(experiment, estimates)) page += html_plot(plot);
   return page + clips(experiment, results) + trial_table(experiment, graphs, results) + html_close();
+}
+
+void claim_folder(const std::filesystem::path& folder, const std::filesystem::path& file, bool overwrite) {
+  const auto note = folder / "experiment.json";
+  const Json owner = {{"experiment", std::filesystem::weakly_canonical(file).string()}};
+  if (!overwrite && std::filesystem::exists(folder) && !std::filesystem::is_empty(folder)) {
+    std::ifstream in(note);
+    const Json noted = Json::parse(in, nullptr, false);
+    const bool own = noted == owner;  // also false for what is no JSON
+    if (!own)
+      throw std::invalid_argument(fmt::format(
+          "{}: holds {}; name another folder with -o, or give --overwrite", folder.string(),
+          noted.is_object() && noted.contains("experiment") ? "the results of " + text_of(noted["experiment"])
+                                                            : "files that no experiment wrote"));
+  }
+  write_file(note, owner.dump(2) + "\n");
 }
 
 void write_results(const Experiment& experiment, const std::vector<Graph>& graphs,

@@ -12,9 +12,16 @@ namespace talkgraph {
 /// Means with their intervals, a picture an output: as lines over the first factor that is a number, else as bars.
 std::vector<Plot> plot_estimates(const Experiment& experiment, const std::vector<Estimate>& estimates);
 
+/// Complaints about measures that are to be plotted and that no output has.
+std::vector<std::string> missing_measures(const Experiment& experiment, const std::vector<Estimate>& estimates);
+
 /// The page that compares the trials: scores, plots, clips beside each other, what differed, how each trial went.
 std::string experiment_page(const Experiment& experiment, const std::vector<Graph>& graphs,
                             const std::vector<TrialResult>& results);
+
+/// Makes the folder of an experiment and notes in experiment.json which file it is of. Throws std::invalid_argument if
+/// the folder holds anything else than results of that file, unless it may be overwritten.
+void claim_folder(const std::filesystem::path& folder, const std::filesystem::path& file, bool overwrite);
 
 /// Writes to the experiment's folder, each file whole or not at all:
 ///   results.csv, results.json  one line a number

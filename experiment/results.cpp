@@ -55,11 +55,11 @@ std::string csv_cell(const Json& cell) { return csv_text(cell.is_string() ? cell
 
 std::string csv_line(const std::vector<std::string>& cells) { return fmt::format("{}\n", fmt::join(cells, ",")); }
 
-/// Calls f(trial, observation) for all that was observed.
+/// Calls f(trial, result, observation) for all that was observed.
 template <class F>
 void for_each_observation(const Experiment& experiment, const std::vector<TrialResult>& results, F f) {
   for (std::size_t t = 0; t < results.size(); ++t)
-    for (const auto& o : results[t].observations) f(experiment.trials[t], o);
+    for (const auto& o : results[t].observations) f(experiment.trials[t], results[t], o);
 }
 
 }  // namespace
@@ -127,10 +127,14 @@ std::vector<Estimate> estimate(const Experiment& experiment, const std::vector<T
     }
     ++trial;
   }
+  std::vector<bool> partial(experiment.settings);
+  for (std::size_t t = 0; t < results.size(); ++t)
+    if (results[t].failures > 0) partial[experiment.trials[t].setting] = true;
   std::vector<Estimate> out;
   for (const auto& name : order) {
     Estimate& e = out.emplace_back(estimate_of(samples[name]));
     std::tie(e.setting, e.output, e.row, e.measure) = name;
+    e.partial = partial[e.setting];
   }
   return out;
 }
@@ -138,12 +142,13 @@ std::vector<Estimate> estimate(const Experiment& experiment, const std::vector<T
 std::string tidy_csv(const Experiment& experiment, const std::vector<TrialResult>& results) {
   std::vector<std::string> head{"trial"};
   for (const auto& factor : experiment.factors) head.push_back(csv_text(factor));
-  for (const char* more : {"seed", "output", "item", "row", "measure", "value"}) head.emplace_back(more);
+  for (const char* more : {"seed", "status", "output", "item", "row", "measure", "value"}) head.emplace_back(more);
   std::string out = csv_line(head);
-  for_each_observation(experiment, results, [&](const Trial& trial, const Observation& o) {
+  for_each_observation(experiment, results, [&](const Trial& trial, const TrialResult& result, const Observation& o) {
     std::vector<std::string> line{csv_text(trial.name)};
     for (const auto& level : trial.levels) line.push_back(csv_cell(level));
     line.push_back(trial.seed ? fmt::format("{}", *trial.seed) : "");
+    line.emplace_back(status_text(result.status));
     for (const auto* text : {&o.output, &o.item, &o.row, &o.measure}) line.push_back(csv_text(*text));
     line.push_back(fmt::format("{}", o.value));
     out += csv_line(line);
@@ -153,11 +158,15 @@ std::string tidy_csv(const Experiment& experiment, const std::vector<TrialResult
 
 Json tidy_json(const Experiment& experiment, const std::vector<TrialResult>& results) {
   Json out = Json::array();
-  for_each_observation(experiment, results, [&](const Trial& trial, const Observation& o) {
+  for_each_observation(experiment, results, [&](const Trial& trial, const TrialResult& result, const Observation& o) {
     Json& line = out.emplace_back(Json{{"trial", trial.name}});
     for (std::size_t f = 0; f < experiment.factors.size(); ++f) line[experiment.factors[f]] = trial.levels[f];
     line["seed"] = trial.seed ? Json(*trial.seed) : Json();
-    line.update({{"output", o.output}, {"item", o.item}, {"row", o.row}, {"measure", o.measure}});
+    line.update({{"status", status_text(result.status)},
+                 {"output", o.output},
+                 {"item", o.item},
+                 {"row", o.row},
+                 {"measure", o.measure}});
     line["value"] = std::isfinite(o.value) ? Json(o.value) : Json();
   });
   return out;
@@ -166,7 +175,8 @@ Json tidy_json(const Experiment& experiment, const std::vector<TrialResult>& res
 std::string estimates_csv(const Experiment& experiment, const std::vector<Estimate>& estimates) {
   std::vector<std::string> head;
   for (const auto& factor : experiment.factors) head.push_back(csv_text(factor));
-  for (const char* more : {"output", "row", "measure", "n", "over", "mean", "low", "high"}) head.emplace_back(more);
+  for (const char* more : {"output", "row", "measure", "n", "over", "partial", "mean", "low", "high"})
+    head.emplace_back(more);
   std::string out = csv_line(head);
   std::vector<const Trial*> of_setting(experiment.settings);
   for (const auto& trial : experiment.trials) of_setting[trial.setting] = &trial;
@@ -176,6 +186,7 @@ std::string estimates_csv(const Experiment& experiment, const std::vector<Estima
     for (const auto* text : {&e.output, &e.row, &e.measure}) line.push_back(csv_text(*text));
     line.push_back(fmt::format("{}", e.n));
     line.emplace_back(e.over_items ? "items" : "repeats");
+    line.emplace_back(e.partial ? "yes" : "no");
     line.push_back(fmt::format("{}", e.mean));
     const bool single = std::isnan(e.half_width);
     line.push_back(single ? "" : fmt::format("{}", e.mean - e.half_width));

@@ -50,6 +50,7 @@ struct Estimate {
   std::string output, row, measure;
   std::size_t n = 0;        ///< numbers that the mean is of
   bool over_items = false;  ///< not repeats
+  bool partial = false;     ///< some items of the trials failed
   double mean = 0;
   double half_width = 0;  ///< of the interval; NaN for a single number
 };
@@ -61,10 +62,10 @@ std::vector<Estimate> estimate(const Experiment& experiment, const std::vector<T
 /// Half the width of the 95 % confidence interval of the mean of n >= 2 numbers.
 double confidence_half_width(const std::vector<double>& values);
 
-/// One line a number: trial, factors, seed, output, item, row, measure, value.
+/// One line a number: trial, factors, seed, status, output, item, row, measure, value.
 std::string tidy_csv(const Experiment& experiment, const std::vector<TrialResult>& results);
 Json tidy_json(const Experiment& experiment, const std::vector<TrialResult>& results);
-/// One line an estimate: factors, output, row, measure, n, over, mean, low, high.
+/// One line an estimate: factors, output, row, measure, n, over, partial, mean, low, high.
 std::string estimates_csv(const Experiment& experiment, const std::vector<Estimate>& estimates);
 
 }  // namespace talkgraph

@@ -97,15 +97,15 @@ TEST(Results, TidyTableHasALineANumber) {
   const std::vector<TrialResult> results = {result_of({{"scores", "", "a, b", "acc", 0.25}}),
                                             result_of({{"scores", "k", "", "acc", INFINITY}})};
   EXPECT_EQ(tidy_csv(e, results),
-            "trial,filters,seed,output,item,row,measure,value\n"
-            "\"filters=20,seed=1\",20,1,scores,,\"a, b\",acc,0.25\n"
-            "\"filters=20,seed=2\",20,2,scores,k,,acc,inf\n");
+            "trial,filters,seed,status,output,item,row,measure,value\n"
+            "\"filters=20,seed=1\",20,1,finished,scores,,\"a, b\",acc,0.25\n"
+            "\"filters=20,seed=2\",20,2,finished,scores,k,,acc,inf\n");
   const auto json = tidy_json(e, results);
   EXPECT_EQ(json[0]["filters"], 20);
   EXPECT_EQ(json[0]["value"], 0.25);
   EXPECT_TRUE(json[1]["value"].is_null());
   EXPECT_EQ(estimates_csv(e, estimate(e, {results[0]})),
-            "filters,output,row,measure,n,over,mean,low,high\n20,scores,\"a, b\",acc,1,repeats,0.25,,\n");
+            "filters,output,row,measure,n,over,partial,mean,low,high\n20,scores,\"a, b\",acc,1,repeats,no,0.25,,\n");
 }
 
 TEST(Results, PlotsAreLinesOverANumberAndBarsElse) {
@@ -119,8 +119,10 @@ TEST(Results, PlotsAreLinesOverANumberAndBarsElse) {
   for (auto& trial : e.trials) trial.levels[0] = trial.levels[0] == 20 ? "MFCC" : "PLP";
   const auto bars = plot_estimates(e, estimate(e, results));
   EXPECT_THAT(bars[0].svg, HasSubstr(">MFCC, ours</text>"));
-  e.plot = {"amse"};
+  e.plot = {"acd"};
   EXPECT_TRUE(plot_estimates(e, estimate(e, results)).empty());
+  EXPECT_THAT(missing_measures(e, estimate(e, results)),
+              testing::ElementsAre("There is no measure \"acd\" to plot (did you mean \"acc\"?)."));
 }
 
 TEST(Results, PageShowsScoresClipsAndHowRunsWent) {
@@ -144,6 +146,65 @@ TEST(Results, PageShowsScoresClipsAndHowRunsWent) {
   EXPECT_THAT(page, Not(HasSubstr("nan")));
   for (const char* file : {"results.csv", "results.json", "means.csv", "plots/scores.svg"})
     EXPECT_FALSE(folder.read(file).empty()) << file;
+}
+
+TEST(Results, LevelsThatTwoFactorsHaveKeepTheirNames) {
+  Experiment e;
+  e.factors = {"train", "test"};
+  for (const auto* levels : {"clean noisy", "noisy clean"}) {
+    Trial& trial = e.trials.emplace_back();
+    trial.setting = e.trials.size() - 1;
+    trial.levels = {std::string(levels).substr(0, 5), std::string(levels).substr(6)};
+  }
+  e.settings = 2;
+  const auto bars =
+      plot_estimates(e, estimate(e, {result_of({{"s", "", "", "acc", 1}}), result_of({{"s", "", "", "acc", 2}})}));
+  EXPECT_THAT(bars[0].svg, HasSubstr(">train clean, test noisy</text>"));
+}
+
+TEST(Results, PartialOnesAreMarked) {
+  const auto e = two_settings();
+  auto partial = result_of({{"scores", "a", "", "acc", 1}});
+  partial.status = TrialResult::Status::failed;
+  partial.failures = 1;
+  const std::vector<TrialResult> results = {result_of({{"scores", "a", "", "acc", 2}}), partial,
+                                            result_of({{"scores", "a", "", "acc", 7}}), TrialResult{}};
+  const auto estimates = estimate(e, results);
+  EXPECT_TRUE(estimates[0].partial);
+  EXPECT_FALSE(estimates[1].partial);
+  EXPECT_THAT(tidy_csv(e, results), HasSubstr(",2,failed,scores,a,,acc,1\n"));
+  EXPECT_EQ(tidy_json(e, results)[1]["status"], "failed");
+  EXPECT_THAT(estimates_csv(e, estimates), HasSubstr("repeats,yes,"));
+  std::vector<Graph> graphs(4);
+  for (auto& graph : graphs) graph.resolved = {{"nodes", Json::object()}, {"seed", 1}};
+  const auto page = experiment_page(e, graphs, results);
+  EXPECT_THAT(page, HasSubstr(" *</td>"));
+  EXPECT_THAT(page, HasSubstr("Without items that failed"));
+  EXPECT_THAT(page, HasSubstr("<td>7</td>"));
+}
+
+TEST(Results, FolderBelongsToOneExperiment) {
+  const test::TemporaryFolder folder;
+  const auto out = folder.path() / "out";
+  const auto complaint = [&](const std::string& file) -> std::string {
+    try {
+      claim_folder(out, file, false);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint(folder.file("a.json")), "");
+  EXPECT_EQ(complaint(folder.file("./a.json")), "") << "the same once more";
+  EXPECT_THAT(complaint(folder.file("b.json")), HasSubstr("holds the results of " + folder.file("a.json")));
+  claim_folder(out, folder.file("b.json"), true);
+  EXPECT_THAT(complaint(folder.file("a.json")), HasSubstr("b.json"));
+  std::filesystem::remove(out / "experiment.json");
+  EXPECT_EQ(complaint(folder.file("a.json")), "") << "it is empty";
+  std::filesystem::remove(out / "experiment.json");
+  folder.write("out/thesis.tex", "mine");
+  EXPECT_THAT(complaint(folder.file("a.json")), HasSubstr("holds files that no experiment wrote"));
+  EXPECT_EQ(folder.read("out/thesis.tex"), "mine");
 }
 
 }  // namespace
