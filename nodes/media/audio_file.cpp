@@ -65,8 +65,9 @@ Audio read_by_sndfile(SNDFILE* file, const SF_INFO& info, const std::string& pat
   const auto samples = mean_of_channels(file, info.channels);
   const bool short_of = std::ssize(samples) < info.frames && !may_count_frames_wrongly(info);
   if (sf_error(file) != SF_ERR_NO_ERROR || short_of)
-    throw std::runtime_error(fmt::format("{}: breaks off or is damaged after {} of {} samples", path, samples.size(),
-                                         std::max<std::int64_t>(info.frames, std::ssize(samples))));
+    throw std::runtime_error(fmt::format(
+        "{}: breaks off or is damaged after {}{} samples", path, samples.size(),
+        info.frames < SF_COUNT_MAX && info.frames > std::ssize(samples) ? fmt::format(" of {}", info.frames) : ""));
   Audio audio;
   audio.samples = Eigen::Map<const Eigen::VectorXd>(samples.data(), std::ssize(samples));
   audio.rate = info.samplerate;

@@ -19,12 +19,13 @@ constexpr double kRoom = 5e-4;
 
 std::vector<std::int16_t> sphinx_samples(const Audio& audio) {
   const Audio sound = resampled(audio, kSphinxRate);
-  const double noise = sound.samples.size() ? kRoom * sound.samples.cwiseAbs().maxCoeff() : 0;
+  const double peak = sound.samples.size() ? sound.samples.cwiseAbs().maxCoeff() : 0, noise = kRoom * peak;
+  const double scale = 32767 / std::max(1.0, peak);  // float files may hold samples beyond full scale
   Random random(1, "phones", "room");
   std::vector<std::int16_t> samples;
   for (const double x : sound.samples)
     samples.push_back(static_cast<std::int16_t>(
-        std::clamp(std::lround(32767 * (x + random.uniform(-noise, noise))), -32767L, 32767L)));
+        std::clamp(std::lround(scale * (x + random.uniform(-noise, noise))), -32767L, 32767L)));
   return samples;
 }
 

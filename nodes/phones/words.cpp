@@ -49,9 +49,9 @@ Words digits(std::string_view number) {
   return words;
 }
 
-/// 1984 and 2015 are read in two halves.
+/// 1984, 1900 and 2015 are read in two halves.
 bool reads_as_year(std::string_view number, std::uint64_t n) {
-  return number.size() == 4 && ((n >= 1100 && n < 2000) || (n >= 2010 && n < 2100)) && n % 100 != 0;
+  return number.size() == 4 && ((n >= 1100 && n < 2000) || (n >= 2010 && n < 2100));
 }
 
 Words whole_number(std::string_view number, bool plain) {
@@ -59,6 +59,10 @@ Words whole_number(std::string_view number, bool plain) {
   const std::uint64_t n = std::stoull(std::string(number));
   if (!plain || !reads_as_year(number, n)) return cardinal(n);
   Words words = cardinal(n / 100);
+  if (n % 100 == 0) {
+    words.emplace_back("hundred");
+    return words;
+  }
   if (n % 100 < 10) words.emplace_back("oh");
   append(words, cardinal(n % 100));
   return words;
@@ -166,20 +170,30 @@ Words take_money(const Money& kind, std::string_view& text) {
   return words;
 }
 
+/// Bytes of a space, punctuation mark or symbol beyond ASCII at the start of the text; 0 where there is none.
+std::size_t sign_size(std::string_view text) {
+  if (money_at(text)) return 0;
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0; };
+  if (byte(0) == 0xc2) return 2;                     // U+0080 to U+00BF
+  if (byte(0) == 0xe2 && byte(1) < 0xb0) return 3;   // U+2000 to U+2BFF
+  if (byte(0) == 0xe3 && byte(1) == 0x80) return 3;  // U+3000 to U+303F
+  return byte(0) >= 0xf0 ? 4 : 0;                    // U+10000 and above: emoji
+}
+
 std::string lower_with_plain_apostrophes(std::string_view text) {
   std::string plain;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text.substr(i).starts_with("\u2019")) {
+  while (!text.empty()) {
+    std::size_t size = 1;
+    if (text.starts_with("\u2019")) {
       plain += '\'';
-      i += 2;
-    } else if (text.substr(i).starts_with("\u2018") || text.substr(i).starts_with("\u201c") ||
-               text.substr(i).starts_with("\u201d") || text.substr(i).starts_with("\u2013") ||
-               text.substr(i).starts_with("\u2014") || text.substr(i).starts_with("\u2026")) {
+      size = 3;
+    } else if (const auto sign = sign_size(text)) {
       plain += ' ';
-      i += 2;
+      size = sign;
     } else {
-      plain += text[i] >= 'A' && text[i] <= 'Z' ? static_cast<char>(text[i] - 'A' + 'a') : text[i];
+      plain += text[0] >= 'A' && text[0] <= 'Z' ? static_cast<char>(text[0] - 'A' + 'a') : text[0];
     }
+    text.remove_prefix(std::min(size, text.size()));
   }
   return plain;
 }

@@ -16,6 +16,10 @@ TEST(SpokenWords, DropPunctuationAndCase) {
             "well known isn't it yes it's the dogs");
   EXPECT_EQ(said(""), "");
   EXPECT_EQ(said(" \n\t .,;"), "");
+  EXPECT_EQ(said("\u00abOne\u00bb\u00a0two\u202fthree \u2022 four\u2212five\u3000six \U0001f600"),
+            "one two three four five six");
+  EXPECT_EQ(said("na\u00efve caf\u00e9 \u00a3 \u20ac\xc2"), "na\u00efve caf\u00e9")
+      << "letters stay, even at a cut end";
 }
 
 TEST(SpokenWords, SpellOutNumbers) {
@@ -33,6 +37,7 @@ TEST(SpokenWords, SpellOutNumbers) {
 TEST(SpokenWords, ReadYearsInHalves) {
   EXPECT_EQ(said("1984"), "nineteen eighty four");
   EXPECT_EQ(said("1905"), "nineteen oh five");
+  EXPECT_EQ(said("1900, the 1800s"), "nineteen hundred the eighteen hundreds");
   EXPECT_EQ(said("2000"), "two thousand");
   EXPECT_EQ(said("2015"), "twenty fifteen");
   EXPECT_EQ(said("1,984"), "one thousand nine hundred eighty four");
