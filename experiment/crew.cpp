@@ -103,8 +103,6 @@ class Crew {
     const Graph& graph = graphs_[trial];
     try {
       const fs::path path = options_.folder / "trials" / experiment_.trials[trial].name;
-      // What another graph left there does not belong to this trial.
-      if (fs::exists(path / "run.json")) fs::remove_all(path);
       RunFolder folder(graph, path);
       Warnings warnings(graph, [&](std::string_view message) {
         const std::lock_guard lock(mutex_);

@@ -338,6 +338,13 @@ void Caller::claim(const Station& station, const std::filesystem::path& file) {
         fmt::format("{} is written by {} already: each needs a folder or name of its own", file.string(), at->second));
 }
 
+std::vector<std::string> Caller::files() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> files;
+  for (const auto& [file, call] : written_) files.push_back(file.string());
+  return files;
+}
+
 void Caller::deliver(const Station& station, const std::filesystem::path& desk) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(desk))
     if (entry.is_regular_file()) claim(station, entry.path().lexically_relative(desk));

@@ -75,6 +75,8 @@ class Caller {
   void domain_size(int source, std::size_t items) const;
   std::vector<NodeStats> stats() const;
   std::vector<Failure> failures() const;
+  /// Files that sinks wrote, below the run folder.
+  std::vector<std::string> files() const;
 
  private:
   friend class OpenSource;

@@ -24,7 +24,7 @@ RunResult run_once(const Graph& graph, const RunOptions& options, Keeper* keeper
   for (auto* o : options.observers) o->started(graph);
   const auto end = [&](RunReport::Status status, std::string error) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    const RunReport report{status, std::move(error), wall.count(), caller.stats(), caller.failures()};
+    const RunReport report{status, std::move(error), wall.count(), caller.stats(), caller.failures(), caller.files()};
     for (auto* o : options.observers) o->ended(report);
     return report;
   };
@@ -45,6 +45,23 @@ RunResult run_once(const Graph& graph, const RunOptions& options, Keeper* keeper
   }
 }
 
+/// The keeper of a run. Where it cannot be made, the run ends before its first node, and observers are told.
+Keeper make_keeper(const Graph& graph, const RunOptions& options, std::function<void(std::string_view)> warn) {
+  const auto end = [&](RunReport::Status status, std::string error) {
+    const RunReport report{status, std::move(error), 0, std::vector<NodeStats>(graph.nodes.size()), {}};
+    for (auto* o : options.observers) o->started(graph), o->ended(report);
+  };
+  try {
+    return Keeper(graph, *options.cache, options.folder, options.cancel, std::move(warn));
+  } catch (const Cancelled&) {
+    end(RunReport::Status::cancelled, "");
+    throw;
+  } catch (const std::exception& e) {
+    end(RunReport::Status::failed, e.what());
+    throw;
+  }
+}
+
 }  // namespace
 
 RunResult run(const Graph& graph, const RunOptions& options) {
@@ -58,7 +75,7 @@ RunResult run(const Graph& graph, const RunOptions& options) {
   };
   constexpr int most_restarts = 100;
   for (int restarts = 0; restarts <= most_restarts; ++restarts) {
-    Keeper keeper(graph, *options.cache, options.folder, options.cancel, warn);
+    Keeper keeper = make_keeper(graph, options, warn);
     try {
       return run_once(graph, options, &keeper);
     } catch (const Cache::Damaged& e) {

@@ -3,10 +3,10 @@
 namespace talkgraph {
 namespace {
 
-const char* text(RunReport::Status status) {
-  switch (status) {
+const char* status_text(const RunReport& report) {
+  switch (report.status) {
     case RunReport::Status::finished:
-      return "finished";
+      return report.failures.empty() ? "finished" : "finished with failures";
     case RunReport::Status::failed:
       return "failed";
     case RunReport::Status::cancelled:
@@ -20,7 +20,7 @@ const char* text(RunReport::Status status) {
 Json to_json(const Failure& f) { return {{"node", f.node}, {"item", f.item}, {"place", f.place}, {"cause", f.cause}}; }
 
 Json to_json(const Graph& graph, const RunReport& report) {
-  Json json = {{"status", text(report.status)}, {"seconds", report.wall}};
+  Json json = {{"status", status_text(report)}, {"seconds", report.wall}};
   if (!report.error.empty()) json["error"] = report.error;
   json["failures"] = Json::array();
   for (const auto& f : report.failures) json["failures"].push_back(to_json(f));

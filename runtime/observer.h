@@ -47,6 +47,7 @@ struct RunReport {
   double wall = 0;               ///< seconds
   std::vector<NodeStats> nodes;  ///< as in the graph
   std::vector<Failure> failures;
+  std::vector<std::string> files = {};  ///< that nodes wrote, below the run folder
 };
 
 /// {"node", "item", "place", "cause"}

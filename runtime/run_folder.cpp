@@ -28,6 +28,21 @@ fs::path unused_folder(const Graph& graph, std::chrono::system_clock::time_point
   return path;
 }
 
+/// Removes what an earlier run wrote, as its run.json lists it, and the folders that are empty then.
+void clear_earlier_run(const fs::path& folder) {
+  std::ifstream in(folder / "run.json");
+  const Json report = Json::parse(in, nullptr, false);
+  if (!report.is_object()) return;
+  for (const auto& name : report.value("files", Json::array())) {
+    const fs::path file = fs::path(name.get<std::string>()).lexically_normal();
+    if (file.empty() || file.is_absolute() || *file.begin() == "..") continue;
+    std::error_code left;
+    fs::remove(folder / file, left);
+    for (auto parent = file.parent_path(); !parent.empty() && !left; parent = parent.parent_path())
+      fs::remove(folder / parent, left);
+  }
+}
+
 }  // namespace
 
 RunFolder::RunFolder(const Graph& graph, fs::path path)
@@ -35,6 +50,7 @@ RunFolder::RunFolder(const Graph& graph, fs::path path)
   try {
     fs::create_directories(path_);
     sweep_parts(path_);
+    clear_earlier_run(path_);
     write_file(path_ / "graph.resolved.json", graph.resolved.dump(2) + "\n");
     write_file(path_ / "run.json", header("running").dump(2) + "\n");
     log_.open(path_ / "log.txt", std::ios::app);
@@ -78,6 +94,7 @@ void RunFolder::ended(const RunReport& report) {
   json["ended"] = iso(Clock::now());
   json["peak_memory_bytes"] = peak_memory();
   json.update(to_json(graph_, report));
+  json["files"] = report.files;
   write_file(path_ / "run.json", json.dump(2) + "\n");
   const std::string status = json["status"];
   log(report.error.empty() ? status : status + ": " + report.error);

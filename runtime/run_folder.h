@@ -14,13 +14,14 @@ namespace talkgraph {
 /// The folder of one run. Holds
 ///   graph.resolved.json  the graph as it can be run again
 ///   log.txt              what nodes said and what failed, with UTC times
-///   run.json             status (running, finished, failed, cancelled), started and ended, seconds,
-///                        peak memory, calls and times of each node, failures
+///   run.json             status (running, finished, finished with failures, failed, cancelled), started and ended,
+///                        seconds, peak memory, calls and times of each node, failures, the files that the run wrote
 /// and what sinks write. Give it to the run as an observer.
 class RunFolder final : public RunObserver {
  public:
   /// Makes the folder, `runs/<graph>-<UTC time>` unless a path is given (which
-  /// may exist). Throws std::runtime_error if it cannot be written.
+  /// may exist): what an earlier run wrote there is removed, all else stays.
+  /// Throws std::runtime_error if it cannot be written.
   explicit RunFolder(const Graph& graph, std::filesystem::path path = {});
 
   const std::filesystem::path& path() const { return path_; }

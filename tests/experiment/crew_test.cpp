@@ -143,12 +143,15 @@ TEST_F(CrewTest, AListenerThatFailsIsToldOfOnceAndStopsNothing) {
   EXPECT_EQ(warnings, "the disk is full");
 }
 
-TEST_F(CrewTest, AnOldFolderOfAnotherGraphLeavesNothingBehind) {
+TEST_F(CrewTest, OfAnEarlierRunNothingIsLeftAndAllElseStays) {
   run(R"("vary": { "scale": [1] })");
-  folder_.write("out/trials/scale=1/pictures/old.svg", "old");
-  run(R"("vary": { "scale": [1] })");
-  EXPECT_EQ(folder_.read("out/trials/scale=1/pictures/old.svg"), "");
-  EXPECT_EQ(folder_.read("out/trials/scale=1/pictures/1.svg"), "<svg/>");
+  const auto trial = folder_.path() / "out/trials/scale=1";
+  ASSERT_TRUE(std::filesystem::exists(trial / "pictures/3.svg"));
+  folder_.write("out/trials/scale=1/pictures/notes.txt", "mine");
+  run(R"("vary": { "scale": [1] }, "set": { "nodes.items.params.items": 2 })");
+  EXPECT_FALSE(std::filesystem::exists(trial / "pictures/3.svg"));
+  EXPECT_TRUE(std::filesystem::exists(trial / "pictures/2.svg"));
+  EXPECT_EQ(folder_.read("out/trials/scale=1/pictures/notes.txt"), "mine");
 }
 
 }  // namespace

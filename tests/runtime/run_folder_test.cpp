@@ -42,7 +42,7 @@ TEST_F(RunFolderTest, RecordsARun) {
   options.observers = {&folder};
   run(b_.graph, options);
   const auto json = record();
-  EXPECT_EQ(json["status"], "finished");
+  EXPECT_EQ(json["status"], "finished with failures");
   EXPECT_EQ(json["graph"], "pipelines/lips.json");
   EXPECT_GT(json["peak_memory_bytes"], 1'000'000);
   EXPECT_EQ(json["failures"][0]["item"], "u3");
@@ -65,6 +65,45 @@ TEST_F(RunFolderTest, RecordsAFailureAndACancellation) {
   options.cancel = &cancel;
   EXPECT_THROW(run(b_.graph, options), Cancelled);
   EXPECT_EQ(record()["status"], "cancelled");
+}
+
+TEST_F(RunFolderTest, RecordsACancellationBeforeTheFirstNode) {
+  RunFolder folder(b_.graph, home_ / "run");
+  Cache cache(home_ / "cache");
+  RunOptions options;
+  options.observers = {&folder};
+  options.cache = &cache;
+  const std::atomic<bool> cancel{true};
+  options.cancel = &cancel;
+  EXPECT_THROW(run(b_.graph, options), Cancelled);
+  EXPECT_EQ(record()["status"], "cancelled");
+}
+
+TEST_F(RunFolderTest, ClearsWhatAnEarlierRunWroteAndNothingElse) {
+  const auto run_to = [&](const std::string& clips, int items) {
+    GraphBuilder b(registry_);
+    b.graph.resolved = Json::object();
+    b.output("out",
+             b.add("write", "toy.write", {b.add("source", "toy.source", {}, {{"to", items}})}, {{"folder", clips}}));
+    RunFolder folder(b.graph, home_ / "run");
+    RunOptions options;
+    options.folder = folder.path();
+    options.observers = {&folder};
+    run(b.graph, options);
+  };
+  temporary_.write("run/before.txt", "mine");
+  run_to("clips/all", 2);
+  EXPECT_EQ(record()["files"], (Json{"clips/all/u0.txt", "clips/all/u1.txt"}));
+  temporary_.write("run/after.txt", "mine");
+  temporary_.write("outside.txt", "mine");
+  auto forged = record();
+  forged["files"].push_back("../outside.txt");
+  temporary_.write("run/run.json", forged.dump());
+  run_to("one", 1);
+  EXPECT_FALSE(fs::exists(home_ / "run/clips"));
+  EXPECT_TRUE(fs::exists(home_ / "run/one/u0.txt"));
+  for (const char* kept : {"run/before.txt", "run/after.txt", "outside.txt"})
+    EXPECT_EQ(temporary_.read(kept), "mine") << kept;
 }
 
 TEST_F(RunFolderTest, NamesItselfAfterGraphAndTime) {
