@@ -42,7 +42,7 @@ void tell_summary(const Graph& graph, const RunResult& result, const MemoryWatch
   fmt::print(stderr, "took {}\n", duration_text(result.wall));
 }
 
-Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunObserver*> observers,
+Outcome execute(const Graph& graph, const RunCommand& command, Cache* cache, std::vector<RunObserver*> observers,
                 const std::filesystem::path& folder) {
   const ProgressStyle style = command.progress.value_or(usual_style());
   // A program is told in events.
@@ -51,8 +51,6 @@ Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunOb
   MemoryWatch memory;
   observers.push_back(&progress);
   observers.push_back(&memory);
-  std::optional<Trace> trace;
-  if (!command.trace.empty()) observers.push_back(&trace.emplace(command.trace));
   const InterruptGuard guard;
   RunOptions options;
   options.threads = command.threads;
@@ -61,8 +59,7 @@ Outcome execute(const Graph& graph, const RunCommand& command, std::vector<RunOb
   options.keep_going = command.keep_going;
   options.cancel = guard.flag();
   options.observers = std::move(observers);
-  const auto cache = open_cache(command);
-  options.cache = cache.get();
+  options.cache = cache;
   try {
     Outcome outcome{success, run(graph, options)};
     if (told_in_words && style != ProgressStyle::quiet) tell_summary(graph, *outcome.result, memory);
@@ -100,7 +97,9 @@ std::unique_ptr<Cache> open_cache(const RunCommand& command) {
   return std::make_unique<Cache>(command.cache.empty() ? Cache::default_folder() : command.cache, command.cache_limit);
 }
 
-Outcome run_graph(const Graph& graph, const RunCommand& command) { return execute(graph, command, {}, command.folder); }
+Outcome run_graph(const Graph& graph, const RunCommand& command) {
+  return execute(graph, command, open_cache(command).get(), {}, command.folder);
+}
 
 int run_file(const std::string& file, const RunCommand& command, const Registry& registry) {
   Diagnostics diagnostics;
@@ -109,11 +108,16 @@ int run_file(const std::string& file, const RunCommand& command, const Registry&
     fmt::print(stderr, "{}\n", diagnostics.str());
     return usage;
   }
-  if (!command.overwrite && std::filesystem::exists(command.folder / "run.json"))
+  if (!command.overwrite && !command.folder.empty() && std::filesystem::exists(command.folder / "run.json"))
     throw std::invalid_argument(fmt::format("{}: holds a run already; name another folder with -o, or give --overwrite",
                                             command.folder.string()));
+  const auto cache = open_cache(command);
+  std::optional<Trace> trace;
+  if (!command.trace.empty()) trace.emplace(command.trace);
   RunFolder folder(*graph, command.folder);
-  const Outcome outcome = execute(*graph, command, {&folder}, folder.path());
+  std::vector<RunObserver*> observers = {&folder};
+  if (trace) observers.push_back(&*trace);
+  const Outcome outcome = execute(*graph, command, cache.get(), std::move(observers), folder.path());
   fmt::print("run folder: {}\n", folder.path().string());
   if (outcome.result) name_artifacts(*outcome.result, folder.path());
   return outcome.code;

@@ -3,9 +3,20 @@
 #include <fmt/format.h>
 #include <pthread.h>
 
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
 #include "graph/output_file.h"
 
 namespace talkgraph {
+
+Trace::Trace(std::filesystem::path file) : file_(std::move(file)) {
+  const OutputFile probe(file_);
+  errno = std::filesystem::is_directory(file_) ? EISDIR : 0;
+  if (errno || !std::ofstream(probe.part()))
+    throw std::runtime_error(fmt::format("the trace {} cannot be written: {}", file_.string(), std::strerror(errno)));
+}
 
 void Trace::started(const Graph& graph) {
   const std::lock_guard lock(mutex_);

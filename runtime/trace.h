@@ -16,7 +16,8 @@ namespace talkgraph {
 /// run ends, whichever way.
 class Trace : public RunObserver {
  public:
-  explicit Trace(std::filesystem::path file) : file_(std::move(file)) {}
+  /// Throws std::runtime_error if the file cannot be written.
+  explicit Trace(std::filesystem::path file);
 
   void started(const Graph& graph) override;
   void call_started(int node, const std::string& item) override;

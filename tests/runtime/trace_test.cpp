@@ -53,5 +53,14 @@ TEST(Trace, TellsOfEveryCallAndOfWhatWaits) {
     EXPECT_FALSE(e["ph"] == "X" && e["args"].contains("cache")) << "there is none";
 }
 
+TEST(Trace, SaysAtTheStartThatItCannotBeWritten) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(Trace(folder.write("file", "x") + "/trace.json"), std::runtime_error);
+  EXPECT_THROW(Trace(folder.path()), std::runtime_error);
+  EXPECT_THROW(Trace("/proc/trace.json"), std::runtime_error);
+  const Trace sound(folder.path() / "new/trace.json");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "new"));
+}
+
 }  // namespace
 }  // namespace talkgraph
