@@ -28,14 +28,17 @@ void list_trials(const Experiment& experiment, const std::vector<Graph>& graphs,
     const Forecast forecast(graphs[t], cache, cancel);
     std::size_t kept = 0, missing = 0;
     bool foreseen = true;
+    std::string fails;
     for (std::size_t n = 0; n < graphs[t].nodes.size(); ++n) {
       const auto& type = *graphs[t].nodes[n].type;
+      if (type.makes_stream && forecast.fails(static_cast<int>(n)))
+        fails = fmt::format(": will fail, as node \"{}\" does", graphs[t].nodes[n].name);
       if (!type.stored && !type.sink) continue;
       const auto counts = forecast.counts(static_cast<int>(n));
       kept += counts.load, missing += counts.call;
       foreseen = foreseen && (counts.foreseen || counts.call == 0);
     }
-    fmt::print("{:>7} {:>6}{}  {}\n", kept, missing, foreseen ? " " : "+", experiment.trials[t].name);
+    fmt::print("{:>7} {:>6}{}  {}{}\n", kept, missing, foreseen ? " " : "+", experiment.trials[t].name, fails);
   }
   fmt::print("{} runs; kept: results that are found; to do: results that are made and kept (+: at least)\n",
              graphs.size());
@@ -70,6 +73,13 @@ class Journal {
       print({{"event", "warning"}, {"run", name(trial)}, {"message", message}});
     else
       fmt::print(stderr, "{}: warning: {}\n", name(trial), message);
+  }
+
+  void warn(std::string_view message) const {
+    if (style_ == ProgressStyle::json)
+      print({{"event", "warning"}, {"message", message}});
+    else
+      fmt::print(stderr, "warning: {}\n", message);
   }
 
  private:
@@ -145,6 +155,7 @@ int run_experiment(const std::string& file, const ExperimentCommand& command, co
   }
   const auto folder =
       command.run.folder.empty() ? std::filesystem::path("runs") / experiment->name : command.run.folder;
+  claim_folder(folder, file, command.run.overwrite);
   std::vector<TrialResult> results;
   const auto write = [&] { write_results(*experiment, *graphs, results, folder); };
   Journal journal(*experiment, command.run.progress.value_or(usual_style()), write);
@@ -159,6 +170,7 @@ int run_experiment(const std::string& file, const ExperimentCommand& command, co
   options.on_warning = [&](std::size_t trial, std::string_view message) { journal.warned(trial, message); };
   run_trials(*experiment, *graphs, options, results);
   write();
+  for (const auto& missing : missing_measures(*experiment, estimate(*experiment, results))) journal.warn(missing);
   fmt::print("{}\n", (folder / "experiment.html").string());
   return tell_end(results);
 }

@@ -51,6 +51,8 @@ class Forecast {
   std::vector<std::pair<std::string, Need>> needs(int node) const;
   /// Of a source, where they are known ahead, with keys of what was made.
   std::vector<std::pair<std::string, Key>> items(int source) const;
+  /// Whether a source failed while its items were listed, as it will in a run.
+  bool fails(int source) const { return domain(source).failed; }
   const Json& recipe(int node) const { return recipes_[static_cast<std::size_t>(node)]; }
 
   /// A file on which the result of a call depends and that has changed since its key was made; empty if there is none.

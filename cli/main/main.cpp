@@ -103,6 +103,14 @@ int draw(const std::string& file, const Registry& registry, const std::vector<st
   return pclose(dot) == 0 ? success : (fmt::print(stderr, "Graphviz (dot) failed; --format dot needs none\n"), failed);
 }
 
+/// "500MB"; a negative one would be taken for a huge one.
+void take_size(CLI::Option* option) {
+  const auto refuse_negative = [](const std::string& text) {
+    return text.starts_with('-') ? std::string("must not be negative") : std::string();
+  };
+  option->transform(CLI::AsSizeValue(true))->transform(CLI::Validator(refuse_negative, ""));
+}
+
 void add_progress(CLI::App& app, std::optional<ProgressStyle>& style) {
   app.add_option("--progress", style, "terminal, plain or json (default: as it fits standard error)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, ProgressStyle>{
@@ -135,24 +143,23 @@ int main(int argc, char** argv) {
       app.add_subcommand("experiment", "run a graph with many settings and compare what comes of it");
   experiment_app->add_option("experiment", graph, "experiment file")->required();
   experiment_app->add_flag("--dry-run", experiment.dry_run, "list the runs, and how much of each is kept already");
-  experiment_app->add_option("--memory", experiment.memory, "most that runs beside each other may take, as 8GB")
-      ->transform(CLI::AsSizeValue(true));
+  take_size(
+      experiment_app->add_option("--memory", experiment.memory, "most that runs beside each other may take, as 8GB"));
   bool no_cache = false;
   for (auto* c : {run_app, experiment_app}) {
     c->add_option("--set", run.sets, "path=value, or parameter=value")->take_all()->allow_extra_args(false);
     c->add_option("-o,--folder", run.folder, "folder for results (default: below runs/)");
+    c->add_flag("--overwrite", run.overwrite, "write to a folder that holds other results already");
     c->add_option("--threads", run.threads, "threads")->check(CLI::Range(1, 256));
     c->add_flag("--keep-going", run.keep_going, "finish what can be finished, list what failed");
     c->add_option("--cache", run.cache, "folder that keeps results (default: $TALKGRAPH_CACHE, or ~/.cache/talkgraph)");
     c->add_flag("--no-cache", no_cache, "compute everything, keep nothing");
-    c->add_option("--cache-size", run.cache_limit, "most that the cache may hold, as 500MB or 20GB")
-        ->transform(CLI::AsSizeValue(true))
-        ->capture_default_str();
+    take_size(c->add_option("--cache-size", run.cache_limit, "most that the cache may hold, as 500MB or 20GB")
+                  ->capture_default_str());
     add_progress(*c, run.progress);
   }
   run_app->add_flag("--serial", run.serial, "one thread, node by node");
   run_app->add_option("--trace", run.trace, "file that the Perfetto and Chrome trace viewers open");
-  run_app->add_flag("--overwrite", run.overwrite, "write to a folder that holds a run already");
 
   auto* cache_app = app.add_subcommand("cache", "look after the kept results");
   cache_app->require_subcommand(1);
@@ -160,10 +167,9 @@ int main(int argc, char** argv) {
   auto* info_app = cache_app->add_subcommand("info", "where they are, how many, of what");
   auto* verify_app = cache_app->add_subcommand("verify", "read all of them and remove the damaged ones");
   auto* prune_app = cache_app->add_subcommand("prune", "remove the longest unused, or all");
-  prune_app->add_option("--size", keep, "what may stay, as 500MB or 2GB (default: nothing)")
-      ->transform(CLI::AsSizeValue(true));
+  take_size(prune_app->add_option("--size", keep, "what may stay, as 500MB or 2GB (default: nothing)"));
   for (auto* c : {info_app, verify_app, prune_app})
-    c->add_option("--cache", run.cache, "the folder, if not the usual one");
+    c->add_option("--cache", run.cache, "the folder, if not the usual one")->check(CLI::ExistingDirectory);
 
   auto* why_app = app.add_subcommand("why", "what a run would compute, and because of what");
   why_app->add_option("graph", graph, "graph file")->required();
@@ -256,6 +262,9 @@ int main(int argc, char** argv) {
     const int code = command();
     if (std::fflush(stdout) != 0) throw std::runtime_error("standard output cannot be written to");
     return code;
+  } catch (const Cancelled&) {
+    fmt::print(stderr, "stopped\n");
+    return cancelled;
   } catch (const std::invalid_argument& e) {
     fmt::print(stderr, "talkgraph: {}\n", e.what());
     return usage;

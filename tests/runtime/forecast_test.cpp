@@ -173,6 +173,7 @@ TEST_P(CachedRun, ASourceThatFailsIsToldEvenIfAllElseIsKept) {
   options_.keep_going = true;
   run(b.graph, options_);
   EXPECT_EQ(run(b.graph, options_).failures.size(), 1u);
+  EXPECT_TRUE(Forecast(b.graph, *options_.cache).fails(0));
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, CachedRun, testing::Values(Executor::flow, Executor::serial),
