@@ -74,6 +74,10 @@ bool is_picture(const std::string& path) {
   return path.ends_with(".png") || path.ends_with(".jpg") || path.ends_with(".svg");
 }
 
+bool is_video(const std::string& path) {
+  return path.ends_with(".mp4") || path.ends_with(".webm") || path.ends_with(".mkv");
+}
+
 }  // namespace
 
 std::string html_open(const std::string& title, const std::string& notes) {
@@ -112,10 +116,11 @@ std::string html_plot(const Plot& plot) {
 std::string html_clip(const std::string& name, const Artifact& clip) {
   const std::string label = escape_markup(name);
   const std::string shown =
-      is_picture(clip.path)
-          ? fmt::format("<img src=\"{}\" alt=\"{}\">", url(clip.path), label)
-          : fmt::format("<video controls preload=\"metadata\" aria-label=\"{1}\" src=\"{0}\"></video>", url(clip.path),
-                        label);
+      is_picture(clip.path) ? fmt::format("<img src=\"{}\" alt=\"{}\">", url(clip.path), label)
+      : is_video(clip.path)
+          ? fmt::format("<video controls preload=\"metadata\" aria-label=\"{1}\" src=\"{0}\"></video>", url(clip.path),
+                        label)
+          : fmt::format("<a href=\"{}\">{}</a>", url(clip.path), escape_markup(clip.path));
   return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", shown, label);
 }
 

@@ -15,7 +15,7 @@ std::string html_close();
 /// A table with its title as caption; a column and its "NAME std" share cells, "0.59 ± 0.08".
 std::string html_table(const std::string& name, const Table& table);
 std::string html_plot(const Plot& plot);
-/// A player, or a picture, of a file beside the page.
+/// A player or a picture of a file beside the page, a link to one of another kind.
 std::string html_clip(const std::string& name, const Artifact& clip);
 
 }  // namespace talkgraph

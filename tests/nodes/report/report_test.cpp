@@ -51,6 +51,10 @@ TEST_F(Report, EscapesNamesAndPaths) {
   EXPECT_THAT(page, HasSubstr("<img src=\"strips/s.png\" alt=\"strip\">"));
 }
 
+TEST_F(Report, LinksWhatNoPlayerShows) {
+  EXPECT_THAT(html_clip("m", {"a b/model.h5", ""}), HasSubstr("<a href=\"a%20b/model.h5\">a b/model.h5</a>"));
+}
+
 TEST_F(Report, ShowsMeansWithTheirDeviations) {
   const std::string html =
       html_table("t", {"", "method", {"acc", "acc std", "x std"}, {"a", "b"}, {{0.5, 0.125, 1}, {0.25, NAN, NAN}}});
