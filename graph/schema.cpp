@@ -158,20 +158,20 @@ Json json_schema(const Registry& registry) {
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
                  {"title", "talkgraph graph"},
                  {"description", "Nodes and how they are wired; docs/graphs.md explains"}};
-  schema.update(
-      object({{"$schema", text("this schema")},
-              {"extends", text("a graph file that this one is laid over: members are merged, null takes one away")},
-              {"description", text("what the graph does")},
-              {"parameters", object_of(object({{"default", Json(true)}, {"doc", text("what it is")}}))},
-              {"inputs", object_of({{"anyOf",
-                                     {refer("inputType"), object({{"type", refer("inputType")},
-                                                                  {"optional", {{"type", "boolean"}}},
-                                                                  {"doc", text("what it is")}},
-                                                                 {"type"})}}})},
-              {"nodes", {{"type", "object"}}},
-              {"outputs", {{"type", "object"}}},
-              {"seed", {{"anyOf", {{{"type", "integer"}, {"minimum", 0}}, refer("parameter")}}, {"default", 1}}}},
-             {}));
+  schema.update(object(
+      {{"$schema", text("this schema")},
+       {"extends", text("a graph file that this one is laid over: members are merged, null takes one away")},
+       {"description", text("what the graph does")},
+       {"parameters", object_of(object({{"default", Json(true)}, {"doc", text("what it is")}}))},
+       {"inputs", object_of({{"anyOf",
+                              {refer("inputType"), object({{"type", refer("inputType")},
+                                                           {"optional", {{"type", "boolean"}}},
+                                                           {"doc", text("what it is")}},
+                                                          {"type"})}}})},
+       {"nodes", {{"type", "object"}, {"propertyNames", {{"pattern", "^[^. ]+$"}, {"not", {{"const", "inputs"}}}}}}},
+       {"outputs", {{"type", "object"}}},
+       {"seed", {{"anyOf", {{{"type", "integer"}, {"minimum", 0}}, refer("parameter")}}, {"default", 1}}}},
+      {}));
   // What is laid over another graph holds parts of nodes, and null for what it takes away.
   schema["if"] = {{"required", {"extends"}}};
   schema["then"]["properties"] = {{"nodes", object_of({{"type", {"object", "null"}}})},

@@ -64,6 +64,11 @@ TEST_F(Schema, HoldsForEveryPipelineAndExperiment) {
   EXPECT_EQ(complaints(instances(files_naming("talkgraph.experiment.schema.json")), schema), "");
 }
 
+TEST_F(Schema, RefusesNamesThatNoNodeMayHave) {
+  for (const char* name : {"", "a.b", "a b", "inputs"})
+    EXPECT_NE(complaints_of(Json{{"nodes", {{name, {{"type", "voice.speak"}}}}}}.dump()), "") << name;
+}
+
 TEST_F(Schema, FindsWhatIsWrong) {
   using testing::HasSubstr;
   EXPECT_EQ(
