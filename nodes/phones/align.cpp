@@ -46,6 +46,19 @@ std::string quote(std::span<const std::string> words) {
   return '"' + text + '"';
 }
 
+int length(std::span<const FrameSpan> spans) {
+  int frames = 0;
+  for (const auto& span : spans) frames += span.end - span.start;
+  return frames;
+}
+
+/// The distance from the sound, summed over frames.
+double unlikeness(std::span<const FrameSpan> spans) {
+  double sum = 0;
+  for (const auto& span : spans) sum -= span.score * (span.end - span.start);
+  return sum;
+}
+
 /// A run that holds five seconds of words, or all where those are fewer, and how unlike the sound its
 /// words are, as a distance per frame.
 struct Stretch {
@@ -60,31 +73,42 @@ std::optional<Stretch> stretch_from(std::span<const FrameSpan> spans, std::size_
   std::size_t end = first;
   for (; end < spans.size() && frames < kFrames; ++end) {
     if (is_filler(spans[end])) continue;
-    const int length = spans[end].end - spans[end].start;
-    frames += length;
-    sum -= spans[end].score * length;
+    frames += length(spans.subspan(end, 1));
+    sum += unlikeness(spans.subspan(end, 1));
   }
   if (frames == 0 || (first > 0 && frames < kFrames)) return {};
   return Stretch{spans.subspan(first, end - first), sum / frames};
 }
 
-/// The likeliest phones of stretches of a sound, found together with what is around, to which the model adapts.
+/// The likeliest phones of a sound, found where they are asked for, together with what is around, to which the
+/// model adapts.
 class LikeliestPhones {
  public:
   explicit LikeliestPhones(std::span<const std::int16_t> sound) : sound_(sound) {}
 
-  /// How unlike the sound of the words even they are.
+  /// The phones between two frames, cut there.
+  std::vector<FrameSpan> between(int start, int end) {
+    if (start < start_ || end > end_) decode(start, end);
+    std::vector<FrameSpan> inside;
+    for (auto phone : phones_) {
+      phone.start = std::max(start, phone.start);
+      phone.end = std::min(end, phone.end);
+      if (phone.start < phone.end) inside.push_back(std::move(phone));
+    }
+    return inside;
+  }
+
+  /// How unlike the sound of the words even they are, a frame.
   double distance(std::span<const FrameSpan> words) {
     if (words.front().start < start_ || words.back().end > end_) decode(words.front().start, words.back().end);
     int frames = 0;
     double sum = 0;
-    for (const auto& word : words)
-      for (const auto& phone : phones_) {
-        const int common = std::min(word.end, start_ + phone.end) - std::max(word.start, start_ + phone.start);
-        if (common <= 0 || is_filler(word)) continue;
-        frames += common;
-        sum -= phone.score * common;
-      }
+    for (const auto& word : words) {
+      if (is_filler(word)) continue;
+      const auto phones = between(word.start, word.end);
+      frames += length(phones);
+      sum += unlikeness(phones);
+    }
     return sum / std::max(1, frames);
   }
 
@@ -96,6 +120,7 @@ class LikeliestPhones {
     const auto first = static_cast<std::size_t>(start_) * kSphinxHop;
     const auto last = std::min(static_cast<std::size_t>(end_) * kSphinxHop, sound_.size());
     phones_ = decoder_pool<SphinxPhoneLoop>().take()->decode(sound_.subspan(first, last - first));
+    for (auto& phone : phones_) phone.start += start_, phone.end += start_;
   }
 
   std::span<const std::int16_t> sound_;
@@ -105,9 +130,8 @@ class LikeliestPhones {
 
 /// The first stretch that is by more than `mismatch` further from its sound than the likeliest
 /// phones; nothing where the words fit.
-std::optional<Stretch> unlike(std::span<const FrameSpan> spans, std::span<const std::int16_t> sound, double mismatch) {
+std::optional<Stretch> unlike(std::span<const FrameSpan> spans, LikeliestPhones& likeliest, double mismatch) {
   constexpr double kNearest = 10;  // no phones are nearer to their sound
-  LikeliestPhones likeliest(sound);
   int fits_until = 0;
   for (std::size_t first = 0; first < spans.size(); ++first) {
     if (is_filler(spans[first]) || spans[first].start < fits_until) continue;
@@ -119,6 +143,31 @@ std::optional<Stretch> unlike(std::span<const FrameSpan> spans, std::span<const 
     fits_until = (stretch->spans.front().start + stretch->spans.back().end) / 2;
   }
   return {};
+}
+
+/// What is said where the words leave a pause: from the first to the last of its likeliest phones.
+struct Unwritten {
+  int start = 0, end = 0;
+  double excess = 0;  ///< by how much a pause is less likely there, summed over frames
+};
+
+/// The pauses that are by more than `least`, summed over frames, further from their sound than its likeliest phones.
+std::vector<Unwritten> unwritten(std::span<const FrameSpan> spans, LikeliestPhones& likeliest, double least) {
+  constexpr int kShortest = 20;
+  std::vector<Unwritten> found;
+  for (std::size_t first = 0, end = 0; first < spans.size(); first = end + 1) {
+    end = first;
+    while (end < spans.size() && is_filler(spans[end])) ++end;
+    const auto pause = spans.subspan(first, end - first);
+    double excess = unlikeness(pause);
+    if (excess <= least) continue;
+    auto phones = likeliest.between(pause.front().start, pause.back().end);
+    excess -= unlikeness(phones);
+    std::erase_if(phones, is_filler);
+    if (excess > least && length(phones) >= kShortest)
+      found.push_back({phones.front().start, phones.back().end, excess});
+  }
+  return found;
 }
 
 Words spoken(std::span<const FrameSpan> spans) {
@@ -133,9 +182,21 @@ std::string place(const Stretch& stretch) {
                      sphinx_boundary(stretch.spans.front().start), sphinx_boundary(stretch.spans.back().end));
 }
 
-void check_fit(const SphinxAligner::Result& result, const Words& words, std::span<const std::int16_t> sound,
-               double mismatch) {
-  const auto stretch = unlike(result.words, sound, mismatch);
+/// Up to a second of what is not in the transcript (a cough, a slip of the tongue) is told, more is refused.
+void check_pauses(std::span<const FrameSpan> spans, LikeliestPhones& likeliest, double mismatch, Context& context) {
+  constexpr double kTold = 30, kRefused = 100;  // frames of words at the limit
+  for (const auto& speech : unwritten(spans, likeliest, kTold * mismatch)) {
+    const std::string message = fmt::format("what is said from {:.2f} s to {:.2f} s is not in the transcript",
+                                            sphinx_boundary(speech.start), sphinx_boundary(speech.end));
+    if (speech.excess > kRefused * mismatch)
+      throw std::runtime_error("phones.align: " + message +
+                               "; complete the transcript, or leave it out to have the phones recognised");
+    context.warn(message + ": it counts as a pause");
+  }
+}
+
+void check_fit(const SphinxAligner::Result& result, const Words& words, LikeliestPhones& likeliest, double mismatch) {
+  const auto stretch = unlike(result.words, likeliest, mismatch);
   if (result.phones.empty()) {
     const std::size_t reached = std::min(spoken(result.words).size(), words.size() - 1);
     throw std::runtime_error(fmt::format(
@@ -172,7 +233,7 @@ WordTrack word_track(const SphinxAligner::Result& result, const std::vector<doub
 }  // namespace
 
 std::optional<Alignment> Align::operator()(const Audio& audio, const Transcript* transcript, const WordTrack* track,
-                                           const PhoneTrack* given) const {
+                                           const PhoneTrack* given, Context& context) const {
   if (given) return Alignment{*given, track ? *track : WordTrack{}};
   if (!transcript && !track) return {};
   const Words words = known_words(transcript, track);
@@ -190,13 +251,15 @@ std::optional<Alignment> Align::operator()(const Audio& audio, const Transcript*
   learn_missing(*aligner, words);
   const auto samples = sphinx_samples(sound);
   const auto result = aligner->align(samples, words);
-  check_fit(result, words, samples, mismatch);
+  LikeliestPhones likeliest(samples);
+  check_fit(result, words, likeliest, mismatch);
+  check_pauses(result.words, likeliest, mismatch, context);
   const auto starts = phone_starts(result.phones, sound);
   return Alignment{phone_track(result.phones, starts, audio.seconds()), word_track(result, starts, audio.seconds())};
 }
 
 void describe(Description<Align>& d) {
-  d.type("phones.align").version(3).summary("times of the phones of known words, by forced alignment").stored();
+  d.type("phones.align").version(4).summary("times of the phones of known words, by forced alignment").stored();
   d.source("PocketSphinx 0.8+5prealpha with its en-us model");
   d.input("audio", "the speech").input("transcript", "what is said").input("words", "instead of a transcript");
   d.input("given", "phones from the corpus, passed on");
@@ -207,7 +270,8 @@ void describe(Description<Align>& d) {
       .doc(
           "by how much the words of five seconds may be less likely than the likeliest phones, as a log likelihood a "
           "frame, before the transcript counts as wrong: up to 15 for natural speech with its transcript (33 for "
-          "espeak-ng), 33 to 100 with another one");
+          "espeak-ng), 33 to 100 with another one; what is said in pauses counts as unwritten where it is by 0.3 s of "
+          "this likelier than a pause, and is refused from 1 s of it");
 }
 
 }  // namespace talkgraph

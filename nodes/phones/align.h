@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "graph/context.h"
 #include "graph/description.h"
 #include "nodes/types/audio.h"
 #include "nodes/types/phones.h"
@@ -27,6 +28,7 @@ struct Alignment {
 ///
 /// Both tracks cover the whole sound without gaps, "sil" in pauses; words are spelled as they
 /// are spoken ("1984" is three words). A word track without words gives one "sil".
+/// Speech in a pause, which the words lack, is warned about with the place, and is an error where it is long.
 /// Errors: words that do not go with the sound, or do not fit into it, with the
 /// place; words for digital silence or for less than 50 ms; a transcript without
 /// words.
@@ -34,7 +36,7 @@ struct Align {
   double mismatch = 35;  ///< how much less likely than free phones five seconds of words may be, a frame
 
   std::optional<Alignment> operator()(const Audio& audio, const Transcript* transcript, const WordTrack* words,
-                                      const PhoneTrack* given) const;
+                                      const PhoneTrack* given, Context& context) const;
 };
 void describe(Description<Align>& d);
 

@@ -17,9 +17,15 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
+std::optional<Alignment> align(const Audio& audio, const Transcript* transcript, const WordTrack* words,
+                               const PhoneTrack* given) {
+  Context context;
+  return Align{}(audio, transcript, words, given, context);
+}
+
 PhoneTrack align(const Audio& audio, const std::string& text) {
   const Transcript transcript{text};
-  return Align{}(audio, &transcript, nullptr, nullptr).value().phones;
+  return align(audio, &transcript, nullptr, nullptr).value().phones;
 }
 
 void expect_covers(const PhoneTrack& track, double seconds) {
@@ -110,7 +116,7 @@ TEST(Align, FindsThePhonesOfSpeechWhosePhonesAreKnown) {
 
 TEST_F(SpokenSentence, HasItsWordsBetweenItsPhones) {
   const Transcript transcript{text};
-  const Alignment found = Align{}(sentence.audio, &transcript, nullptr, nullptr).value();
+  const Alignment found = align(sentence.audio, &transcript, nullptr, nullptr).value();
   expect_covers({found.words.words}, sentence.audio.seconds());
   std::vector<std::string> words;
   for (const auto& word : found.words.words) {
@@ -184,17 +190,17 @@ TEST_F(SpokenSentence, DoesNotDependOnWhatCameBeforeOrOnThreads) {
 }
 
 TEST_F(SpokenSentence, TakesWordsInsteadOfATranscript) {
-  const PhoneTrack from_words = Align{}(sentence.audio, nullptr, &sentence.words, nullptr).value().phones;
+  const PhoneTrack from_words = align(sentence.audio, nullptr, &sentence.words, nullptr).value().phones;
   expect_same(from_words, align(sentence.audio, text));
 }
 
 TEST_F(SpokenSentence, PassesGivenPhonesOn) {
   const Transcript transcript{"something else"};
-  expect_same(Align{}(sentence.audio, &transcript, nullptr, &sentence.phones).value().phones, sentence.phones);
+  expect_same(align(sentence.audio, &transcript, nullptr, &sentence.phones).value().phones, sentence.phones);
 }
 
 TEST_F(SpokenSentence, WithoutWordsIsLeftToRecognition) {
-  EXPECT_FALSE(Align{}(sentence.audio, nullptr, nullptr, nullptr));
+  EXPECT_FALSE(align(sentence.audio, nullptr, nullptr, nullptr));
   Context context;
   std::string said;
   context.on_warning = [&](std::string_view message) { said = message; };
@@ -211,6 +217,51 @@ TEST_F(SpokenSentence, OfOtherWordsIsRefusedWithThePlace) {
               AllOf(HasSubstr("does not match"), HasSubstr("thirty thousand"), HasSubstr(" s to ")));
 }
 
+double number_after(const std::string& text, const std::string& words) {
+  return std::stod(text.substr(text.find(words) + words.size()));
+}
+
+TEST_F(SpokenSentence, WithMoreThanTheTranscriptHasIsRefusedWithThePlace) {
+  const auto starts_at = [&](const std::string& label) {
+    for (const auto& word : sentence.words.words)
+      if (word.label == label) return word.start;
+    throw std::logic_error(label);
+  };
+  const struct {
+    std::string text;
+    double start, end;
+  } cases[] = {{"please bring me", starts_at("six"), sentence.audio.seconds()},
+               {"big blue cups", 0, starts_at("big")},
+               {"please bring cups", starts_at("me"), starts_at("cups")}};
+  for (const auto& c : cases) {
+    const std::string error = error_of(sentence.audio, c.text);
+    ASSERT_THAT(error, HasSubstr("is not in the transcript; complete the transcript")) << c.text;
+    EXPECT_NEAR(number_after(error, "said from "), c.start, 0.15) << error;
+    EXPECT_NEAR(number_after(error, "s to "), c.end, 0.15) << error;
+  }
+}
+
+TEST_F(SpokenSentence, WithOneWordMoreThanTheTranscriptHasIsTold) {
+  const Transcript transcript{"please bring me six big blue"};
+  Context context;
+  std::string said;
+  context.on_warning = [&](std::string_view message) { said += message; };
+  const auto aligned = Align{}(sentence.audio, &transcript, nullptr, nullptr, context);
+  ASSERT_TRUE(aligned);
+  EXPECT_EQ(aligned->phones.phones.back().label, "sil");
+  ASSERT_THAT(said, HasSubstr("is not in the transcript: it counts as a pause"));
+  EXPECT_NEAR(number_after(said, "said from "), sentence.words.words.end()[-2].start, 0.1) << said;
+}
+
+TEST(Align, TellsNothingOfPausesInRightTranscripts) {
+  for (const auto& text : kTexts) {
+    Context context;
+    context.on_warning = [&](std::string_view message) { ADD_FAILURE() << text << message; };
+    const Transcript transcript{text};
+    EXPECT_TRUE(Align{}(speak(text, {}).audio, &transcript, nullptr, nullptr, context));
+  }
+}
+
 TEST_F(SpokenSentence, TooShortForTheWordsIsRefusedWithThePlace) {
   std::string long_text;
   for (int i = 0; i < 20; ++i) long_text += text + " ";
@@ -225,7 +276,7 @@ TEST(Align, PronouncesWordsOutsideTheDictionary) {
 
 TEST(Align, SpellsNumbersOut) {
   const Transcript transcript{"They read 25 pages on the 3rd of May 1984."};
-  const Alignment found = Align{}(speak(transcript.text, {}).audio, &transcript, nullptr, nullptr).value();
+  const Alignment found = align(speak(transcript.text, {}).audio, &transcript, nullptr, nullptr).value();
   std::string words;
   for (const auto& word : found.words.words)
     if (word.label != "sil") words += word.label + " ";

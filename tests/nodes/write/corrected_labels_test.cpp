@@ -47,8 +47,8 @@ class CorrectedLabels : public testing::Test {
     const Transcript transcript{"In 1984 Bob bought 25 blue boats."};
     const Audio audio = speak(transcript.text, {}).audio;
     write_audio(folder.file("s.wav"), audio);
-    aligned = Align{}(audio, &transcript, nullptr, nullptr).value();
     Context context;
+    aligned = Align{}(audio, &transcript, nullptr, nullptr, context).value();
     context.folder = folder.path();
     context.item = "s";
     WriteLabels{}(aligned.phones, &aligned.words, context);
@@ -62,7 +62,9 @@ class CorrectedLabels : public testing::Test {
         "phones": "corrected.TextGrid", "words": "corrected.TextGrid" } ] })");
     const Recording recording = Manifest{{manifest}}().next()->value;
     const auto word = [](const auto& part) { return part ? &*part : nullptr; };
-    return Align{}(recording.audio(), word(recording.transcript), word(recording.words), word(recording.phones))
+    Context context;
+    return Align{}(recording.audio(), word(recording.transcript), word(recording.words), word(recording.phones),
+                   context)
         .value();
   }
 
