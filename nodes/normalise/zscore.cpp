@@ -12,8 +12,9 @@ Track ZscoreLearn::operator()(const Collected<Track>& tracks) const {
   Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(mean.size());
   Eigen::Index rows = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    squares += (tracks[i].values.rowwise() - mean).colwise().squaredNorm();
-    rows += tracks[i].frames();
+    const auto values = measured(tracks[i]);
+    squares += (values.rowwise() - mean).colwise().squaredNorm();
+    rows += values.rows();
   }
   const Eigen::RowVectorXd deviation = (squares / static_cast<double>(rows)).cwiseSqrt();
   // Below this only rounding varies.
@@ -36,7 +37,7 @@ Track ZscoreApply::operator()(const Track& track, const Track& statistics) const
 }
 
 void describe(Description<ZscoreLearn>& d) {
-  d.type("normalise.zscore_learn").summary("mean and standard deviation of each dimension");
+  d.type("normalise.zscore_learn").version(2).summary("mean and standard deviation of each dimension");
   d.input("tracks", "to learn from").output("statistics", "2 x D: mean, standard deviation");
 }
 

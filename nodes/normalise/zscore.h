@@ -5,7 +5,7 @@
 
 namespace talkgraph {
 
-/// Mean and standard deviation of each dimension over the rows of all tracks,
+/// Mean and standard deviation of each dimension over the measured rows of all tracks,
 /// one row each (2 × D); the deviation of a dimension that does not vary is 0.
 struct ZscoreLearn {
   Track operator()(const Collected<Track>& tracks) const;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <stdexcept>
 
@@ -128,18 +129,24 @@ class LikeliestPhones {
   std::vector<FrameSpan> phones_;
 };
 
-/// The first stretch that is by more than `mismatch` further from its sound than the likeliest
+/// By how much a stretch may be further from its sound: of the many of a long recording some are by chance.
+double limit_for(std::span<const FrameSpan> spans, double mismatch) {
+  const double stretches = std::max(1.0, length(spans) / 500.0);
+  return mismatch * (1 + 0.05 * std::log(stretches));
+}
+
+/// The first stretch that is by more than `limit` further from its sound than the likeliest
 /// phones; nothing where the words fit.
-std::optional<Stretch> unlike(std::span<const FrameSpan> spans, LikeliestPhones& likeliest, double mismatch) {
+std::optional<Stretch> unlike(std::span<const FrameSpan> spans, LikeliestPhones& likeliest, double limit) {
   constexpr double kNearest = 10;  // no phones are nearer to their sound
   int fits_until = 0;
   for (std::size_t first = 0; first < spans.size(); ++first) {
     if (is_filler(spans[first]) || spans[first].start < fits_until) continue;
     auto stretch = stretch_from(spans, first);
     if (!stretch) break;
-    if (stretch->distance <= mismatch + kNearest) continue;
+    if (stretch->distance <= limit + kNearest) continue;
     stretch->distance -= likeliest.distance(stretch->spans);
-    if (stretch->distance > mismatch) return stretch;
+    if (stretch->distance > limit) return stretch;
     fits_until = (stretch->spans.front().start + stretch->spans.back().end) / 2;
   }
   return {};
@@ -196,7 +203,8 @@ void check_pauses(std::span<const FrameSpan> spans, LikeliestPhones& likeliest, 
 }
 
 void check_fit(const SphinxAligner::Result& result, const Words& words, LikeliestPhones& likeliest, double mismatch) {
-  const auto stretch = unlike(result.words, likeliest, mismatch);
+  const double limit = limit_for(result.words, mismatch);
+  const auto stretch = unlike(result.words, likeliest, limit);
   if (result.phones.empty()) {
     const std::size_t reached = std::min(spoken(result.words).size(), words.size() - 1);
     throw std::runtime_error(fmt::format(
@@ -208,8 +216,8 @@ void check_fit(const SphinxAligner::Result& result, const Words& words, Likelies
   if (stretch)
     throw std::runtime_error(fmt::format(
         "phones.align: the transcript does not match the sound: {} (by {:.0f} a frame less likely than other "
-        "phones, at most {:g} is taken); correct the transcript, or leave it out to have the phones recognised",
-        place(*stretch), stretch->distance, mismatch));
+        "phones, at most {:.0f} is taken); correct the transcript, or leave it out to have the phones recognised",
+        place(*stretch), stretch->distance, limit));
 }
 
 /// The words between the phones that they begin with.
@@ -269,7 +277,8 @@ void describe(Description<Align>& d) {
       .positive()
       .doc(
           "by how much the words of five seconds may be less likely than the likeliest phones, as a log likelihood a "
-          "frame, before the transcript counts as wrong: up to 15 for natural speech with its transcript (33 for "
+          "frame, before the transcript counts as wrong (in long recordings a little more): up to 15 for natural "
+          "speech with its transcript (33 for "
           "espeak-ng), 33 to 100 with another one; what is said in pauses counts as unwritten where it is by 0.3 s of "
           "this likelier than a pause, and is refused from 1 s of it");
 }

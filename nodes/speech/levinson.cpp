@@ -18,14 +18,19 @@ void levinson(const Eigen::Ref<const Eigen::VectorXd>& r, LinearPrediction& out)
     for (Eigen::Index i = 0; i < m; ++i) rest -= a[i] * r[m - i];
     const double k = rest / out.error;
     if (!(std::abs(k) < 1)) break;
-    for (Eigen::Index i = 0, j = m - 1; i <= j; ++i, --j) {
-      const double front = a[i], back = a[j];
-      a[i] = front - k * back;
-      a[j] = back - k * front;
-    }
-    a[m] = out.reflection[m] = k;
+    step_up(a, m, k);
+    out.reflection[m] = k;
     out.error *= 1 - k * k;
   }
+}
+
+void step_up(Eigen::VectorXd& a, Eigen::Index m, double k) {
+  for (Eigen::Index i = 0, j = m - 1; i <= j; ++i, --j) {
+    const double front = a[i], back = a[j];
+    a[i] = front - k * back;
+    a[j] = back - k * front;
+  }
+  a[m] = k;
 }
 
 }  // namespace talkgraph

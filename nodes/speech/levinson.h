@@ -16,4 +16,7 @@ struct LinearPrediction {
 /// 1), coefficients are 0. So all are for r_0 ≤ 0, as silence has. `out` is written over and its memory kept.
 void levinson(const Eigen::Ref<const Eigen::VectorXd>& r, LinearPrediction& out);
 
+/// The predictor of order m + 1 from that of order m in the head of `a`, with k_{m+1} = `k`.
+void step_up(Eigen::VectorXd& a, Eigen::Index m, double k);
+
 }  // namespace talkgraph

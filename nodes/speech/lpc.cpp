@@ -77,12 +77,7 @@ void burg(const Lpc& how, const Signal& x, LpcStep& step) {
       f[i] = ahead - k * behind;
       b[i] = behind - k * ahead;
     }
-    for (Index i = 0, j = m - 1; i <= j; ++i, --j) {
-      const double front = a[i], back = a[j];
-      a[i] = front - k * back;
-      a[j] = back - k * front;
-    }
-    a[m] = k;
+    step_up(a, m, k);
     step.power *= 1 - k * k;
   }
 }

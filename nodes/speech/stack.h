@@ -7,7 +7,7 @@ namespace talkgraph {
 
 /// Each frame with its `before` predecessors and `after` successors, oldest
 /// first (T × D (before + 1 + after)); the first and last frame are repeated
-/// beyond the ends.
+/// beyond the ends. A frame with a lost neighbour is lost; names say which neighbour they are of: "c1 at -2".
 struct Stack {
   int before = 5;
   int after = 5;

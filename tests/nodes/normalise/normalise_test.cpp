@@ -69,6 +69,15 @@ TEST(Zscore, GivesZeroWhereTrainingDoesNotVary) {
   EXPECT_TRUE(ZscoreApply{}(track(Eigen::MatrixXd::Random(3, 1)), statistics).values.isZero());
 }
 
+TEST(Zscore, LearnsNothingFromLostFrames) {
+  Track t = track(Eigen::Vector3d(1, 3, 100));
+  t.lost = {2};
+  EXPECT_EQ(ZscoreLearn{}({{"a", t}}).values, Eigen::Vector2d(2, 1));
+  EXPECT_EQ(MeanOf{}({{"a", t}}).values(0, 0), 2);
+  t.lost = {0, 1, 2};
+  EXPECT_THROW(MeanOf{}({{"a", t}}), std::runtime_error);
+}
+
 TEST(Zscore, RefusesWhatDoesNotFit) {
   EXPECT_THROW(ZscoreLearn{}({}), std::runtime_error);
   const Track t = track(Eigen::MatrixXd::Zero(2, 3));

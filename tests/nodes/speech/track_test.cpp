@@ -48,6 +48,16 @@ TEST(Stack, RepeatsTheEnds) {
   EXPECT_EQ((Stack{1, 1}(Track{}).frames()), 0);
 }
 
+TEST(Stack, NamesItsColumnsAndMarksRowsWithALostFrame) {
+  Track t;
+  t.values = Eigen::MatrixXd::Random(5, 1);
+  t.names = {"c1"};
+  t.lost = {1};
+  const Track out = Stack{0, 1}(t);
+  EXPECT_EQ(out.names, (std::vector<std::string>{"c1", "c1 at +1"}));
+  EXPECT_EQ(out.lost, (std::vector<std::int64_t>{0, 1}));
+}
+
 TEST(Deltas, AreTheSlopeOfALine) {
   Track line;
   line.values.resize(10, 2);
