@@ -60,15 +60,28 @@ double unlikeness(std::span<const FrameSpan> spans) {
   return sum;
 }
 
-/// A run that holds five seconds of words, or all where those are fewer, and how unlike the sound its
-/// words are, as a distance per frame.
+/// The share of phones that are squeezed into the model's shortest, one frame a state: where words do not belong they
+/// are, or they cover what they have in common with the sound.
+double squeezed(std::span<const FrameSpan> phones) {
+  const auto is_short = [](const auto& phone) {
+    constexpr int kShortest = 3;
+    return !is_filler(phone) && phone.end - phone.start <= kShortest;
+  };
+  const auto spoken = phones.size() - static_cast<std::size_t>(std::count_if(phones.begin(), phones.end(), is_filler));
+  return static_cast<double>(std::count_if(phones.begin(), phones.end(), is_short)) /
+         static_cast<double>(std::max<std::size_t>(1, spoken));
+}
+
+/// A run that holds five seconds of words, or all where those are fewer, and how unlike the sound its words are.
 struct Stretch {
   std::span<const FrameSpan> spans;
-  double distance = 0;
+  double distance = 0;  ///< a frame, and for squeezed phones
 };
 
-std::optional<Stretch> stretch_from(std::span<const FrameSpan> spans, std::size_t first) {
+std::optional<Stretch> stretch_from(const SphinxAligner::Result& result, std::size_t first) {
   constexpr int kFrames = 500;
+  constexpr double kSqueezed = 60;
+  const std::span spans(result.words);
   int frames = 0;
   double sum = 0;
   std::size_t end = first;
@@ -77,102 +90,67 @@ std::optional<Stretch> stretch_from(std::span<const FrameSpan> spans, std::size_
     frames += length(spans.subspan(end, 1));
     sum += unlikeness(spans.subspan(end, 1));
   }
-  if (frames == 0 || (first > 0 && frames < kFrames)) return {};
-  return Stretch{spans.subspan(first, end - first), sum / frames};
+  const bool all_words = std::all_of(spans.begin(), spans.begin() + static_cast<std::ptrdiff_t>(first), is_filler);
+  if (frames == 0 || (frames < kFrames && !all_words)) return {};
+  const auto starts_before = [](const FrameSpan& phone, int frame) { return phone.start < frame; };
+  const auto from = std::lower_bound(result.phones.begin(), result.phones.end(), spans[first].start, starts_before);
+  const auto to = std::lower_bound(from, result.phones.end(), spans[end - 1].end, starts_before);
+  return Stretch{spans.subspan(first, end - first), sum / frames + kSqueezed * squeezed({from, to})};
 }
 
-/// The likeliest phones of a sound, found where they are asked for, together with what is around, to which the
-/// model adapts.
-class LikeliestPhones {
- public:
-  explicit LikeliestPhones(std::span<const std::int16_t> sound) : sound_(sound) {}
-
-  /// The phones between two frames, cut there.
-  std::vector<FrameSpan> between(int start, int end) {
-    if (start < start_ || end > end_) decode(start, end);
-    std::vector<FrameSpan> inside;
-    for (auto phone : phones_) {
-      phone.start = std::max(start, phone.start);
-      phone.end = std::min(end, phone.end);
-      if (phone.start < phone.end) inside.push_back(std::move(phone));
-    }
-    return inside;
-  }
-
-  /// How unlike the sound of the words even they are, a frame.
-  double distance(std::span<const FrameSpan> words) {
-    if (words.front().start < start_ || words.back().end > end_) decode(words.front().start, words.back().end);
-    int frames = 0;
-    double sum = 0;
-    for (const auto& word : words) {
-      if (is_filler(word)) continue;
-      const auto phones = between(word.start, word.end);
-      frames += length(phones);
-      sum += unlikeness(phones);
-    }
-    return sum / std::max(1, frames);
-  }
-
- private:
-  void decode(int start, int end) {
-    constexpr int kAround = 1000;
-    start_ = std::max(0, start - kAround);
-    end_ = end + kAround;
-    const auto first = static_cast<std::size_t>(start_) * kSphinxHop;
-    const auto last = std::min(static_cast<std::size_t>(end_) * kSphinxHop, sound_.size());
-    phones_ = decoder_pool<SphinxPhoneLoop>().take()->decode(sound_.subspan(first, last - first));
-    for (auto& phone : phones_) phone.start += start_, phone.end += start_;
-  }
-
-  std::span<const std::int16_t> sound_;
-  int start_ = 0, end_ = 0;
-  std::vector<FrameSpan> phones_;
-};
-
-/// By how much a stretch may be further from its sound: of the many of a long recording some are by chance.
+/// How unlike a stretch may be: of the many of a long recording some are by chance.
 double limit_for(std::span<const FrameSpan> spans, double mismatch) {
   const double stretches = std::max(1.0, length(spans) / 500.0);
   return mismatch * (1 + 0.05 * std::log(stretches));
 }
 
-/// The first stretch that is by more than `limit` further from its sound than the likeliest
-/// phones; nothing where the words fit.
-std::optional<Stretch> unlike(std::span<const FrameSpan> spans, LikeliestPhones& likeliest, double limit) {
-  constexpr double kNearest = 10;  // no phones are nearer to their sound
-  int fits_until = 0;
-  for (std::size_t first = 0; first < spans.size(); ++first) {
-    if (is_filler(spans[first]) || spans[first].start < fits_until) continue;
-    auto stretch = stretch_from(spans, first);
+/// The first stretch beyond the limit; nothing where the words fit.
+std::optional<Stretch> unlike(const SphinxAligner::Result& result, double limit) {
+  for (std::size_t first = 0; first < result.words.size(); ++first) {
+    if (is_filler(result.words[first])) continue;
+    const auto stretch = stretch_from(result, first);
     if (!stretch) break;
-    if (stretch->distance <= limit + kNearest) continue;
-    stretch->distance -= likeliest.distance(stretch->spans);
     if (stretch->distance > limit) return stretch;
-    fits_until = (stretch->spans.front().start + stretch->spans.back().end) / 2;
   }
   return {};
+}
+
+/// The likeliest phones of a sound between two frames, cut there. What is around is decoded with them: the model
+/// adapts to it.
+std::vector<FrameSpan> likeliest_phones(std::span<const std::int16_t> sound, int start, int end) {
+  constexpr int kAround = 1000;
+  const int shift = std::max(0, start - kAround);
+  const auto first = static_cast<std::size_t>(shift) * kSphinxHop;
+  const auto last = std::min(static_cast<std::size_t>(end + kAround) * kSphinxHop, sound.size());
+  std::vector<FrameSpan> inside;
+  for (auto phone : decoder_pool<SphinxPhoneLoop>().take()->decode(sound.subspan(first, last - first))) {
+    phone.start = std::max(start, phone.start + shift);
+    phone.end = std::min(end, phone.end + shift);
+    if (phone.start < phone.end) inside.push_back(std::move(phone));
+  }
+  return inside;
 }
 
 /// What is said where the words leave a pause: from the first to the last of its likeliest phones.
 struct Unwritten {
   int start = 0, end = 0;
-  double excess = 0;  ///< by how much a pause is less likely there, summed over frames
+  int frames = 0;  ///< of phones
 };
 
-/// The pauses that are by more than `least`, summed over frames, further from their sound than its likeliest phones.
-std::vector<Unwritten> unwritten(std::span<const FrameSpan> spans, LikeliestPhones& likeliest, double least) {
+/// The pauses in which at least 0.2 s of phones are clearly likelier than a pause.
+std::vector<Unwritten> unwritten(std::span<const FrameSpan> spans, std::span<const std::int16_t> sound) {
   constexpr int kShortest = 20;
+  constexpr double kClearly = 1000;  // log likelihood; right transcripts stay below 330
   std::vector<Unwritten> found;
   for (std::size_t first = 0, end = 0; first < spans.size(); first = end + 1) {
     end = first;
     while (end < spans.size() && is_filler(spans[end])) ++end;
     const auto pause = spans.subspan(first, end - first);
-    double excess = unlikeness(pause);
-    if (excess <= least) continue;
-    auto phones = likeliest.between(pause.front().start, pause.back().end);
-    excess -= unlikeness(phones);
+    if (unlikeness(pause) <= kClearly) continue;
+    auto phones = likeliest_phones(sound, pause.front().start, pause.back().end);
+    if (unlikeness(pause) - unlikeness(phones) <= kClearly) continue;
     std::erase_if(phones, is_filler);
-    if (excess > least && length(phones) >= kShortest)
-      found.push_back({phones.front().start, phones.back().end, excess});
+    if (length(phones) >= kShortest) found.push_back({phones.front().start, phones.back().end, length(phones)});
   }
   return found;
 }
@@ -189,22 +167,22 @@ std::string place(const Stretch& stretch) {
                      sphinx_boundary(stretch.spans.front().start), sphinx_boundary(stretch.spans.back().end));
 }
 
-/// Up to a second of what is not in the transcript (a cough, a slip of the tongue) is told, more is refused.
-void check_pauses(std::span<const FrameSpan> spans, LikeliestPhones& likeliest, double mismatch, Context& context) {
-  constexpr double kTold = 30, kRefused = 100;  // frames of words at the limit
-  for (const auto& speech : unwritten(spans, likeliest, kTold * mismatch)) {
+/// A little of what is not in the transcript (a cough, a slip of the tongue) is told, more is refused.
+void check_pauses(std::span<const FrameSpan> spans, std::span<const std::int16_t> sound, double most,
+                  Context& context) {
+  for (const auto& speech : unwritten(spans, sound)) {
     const std::string message = fmt::format("what is said from {:.2f} s to {:.2f} s is not in the transcript",
                                             sphinx_boundary(speech.start), sphinx_boundary(speech.end));
-    if (speech.excess > kRefused * mismatch)
+    if (0.010 * speech.frames > most)
       throw std::runtime_error("phones.align: " + message +
                                "; complete the transcript, or leave it out to have the phones recognised");
     context.warn(message + ": it counts as a pause");
   }
 }
 
-void check_fit(const SphinxAligner::Result& result, const Words& words, LikeliestPhones& likeliest, double mismatch) {
+void check_fit(const SphinxAligner::Result& result, const Words& words, double mismatch) {
   const double limit = limit_for(result.words, mismatch);
-  const auto stretch = unlike(result.words, likeliest, limit);
+  const auto stretch = unlike(result, limit);
   if (result.phones.empty()) {
     const std::size_t reached = std::min(spoken(result.words).size(), words.size() - 1);
     throw std::runtime_error(fmt::format(
@@ -215,8 +193,8 @@ void check_fit(const SphinxAligner::Result& result, const Words& words, Likelies
   }
   if (stretch)
     throw std::runtime_error(fmt::format(
-        "phones.align: the transcript does not match the sound: {} (by {:.0f} a frame less likely than other "
-        "phones, at most {:.0f} is taken); correct the transcript, or leave it out to have the phones recognised",
+        "phones.align: the transcript does not match the sound: {} (its distance from the sound is {:.0f}, at most "
+        "{:.0f} is taken); correct the transcript, or leave it out to have the phones recognised",
         place(*stretch), stretch->distance, limit));
 }
 
@@ -259,9 +237,8 @@ std::optional<Alignment> Align::operator()(const Audio& audio, const Transcript*
   learn_missing(*aligner, words);
   const auto samples = sphinx_samples(sound);
   const auto result = aligner->align(samples, words);
-  LikeliestPhones likeliest(samples);
-  check_fit(result, words, likeliest, mismatch);
-  check_pauses(result.words, likeliest, mismatch, context);
+  check_fit(result, words, mismatch);
+  check_pauses(result.words, samples, unwritten, context);
   const auto starts = phone_starts(result.phones, sound);
   return Alignment{phone_track(result.phones, starts, audio.seconds()), word_track(result, starts, audio.seconds())};
 }
@@ -276,11 +253,15 @@ void describe(Description<Align>& d) {
   d.param("mismatch", &Align::mismatch)
       .positive()
       .doc(
-          "by how much the words of five seconds may be less likely than the likeliest phones, as a log likelihood a "
-          "frame, before the transcript counts as wrong (in long recordings a little more): up to 15 for natural "
-          "speech with its transcript (33 for "
-          "espeak-ng), 33 to 100 with another one; what is said in pauses counts as unwritten where it is by 0.3 s of "
-          "this likelier than a pause, and is refused from 1 s of it");
+          "how far five seconds of words may be from the sound (in long recordings a little more) before the "
+          "transcript "
+          "counts as wrong: minus the log likelihood a frame, and 60 times the share of phones squeezed to 30 ms. Up "
+          "to "
+          "44 for natural speech with its transcript (52 for espeak-ng), 40 to 130 with another one");
+  d.param("unwritten", &Align::unwritten)
+      .at_least(0)
+      .unit("s")
+      .doc("speech that the transcript lacks, in one pause: more is refused, less is told and counts as a pause");
 }
 
 }  // namespace talkgraph

@@ -33,7 +33,8 @@ struct Alignment {
 /// place; words for digital silence or for less than 50 ms; a transcript without
 /// words.
 struct Align {
-  double mismatch = 35;  ///< how much less likely than free phones five seconds of words may be, a frame
+  double mismatch = 52;    ///< how far five seconds of words may be from the sound: see describe
+  double unwritten = 0.5;  ///< speech that the transcript lacks in one pause, seconds
 
   std::optional<Alignment> operator()(const Audio& audio, const Transcript* transcript, const WordTrack* words,
                                       const PhoneTrack* given, Context& context) const;

@@ -217,6 +217,15 @@ TEST_F(SpokenSentence, OfOtherWordsIsRefusedWithThePlace) {
               AllOf(HasSubstr("does not match"), HasSubstr("thirty thousand"), HasSubstr(" s to ")));
 }
 
+TEST_F(SpokenSentence, OfOtherWordsAfterAPauseIsRefused) {
+  Audio later = sentence.audio;
+  later.samples.resize(sentence.audio.samples.size() + 22050);
+  later.samples << Eigen::VectorXd::Zero(22050), sentence.audio.samples;
+  EXPECT_THAT(error_of(later, text), HasSubstr("no error"));
+  EXPECT_THAT(error_of(later, "thirty thousand men watch football"), HasSubstr("does not match"));
+  EXPECT_THAT(error_of(later, "please bring me six big blue cups and then go home quickly"), HasSubstr("do not fit"));
+}
+
 double number_after(const std::string& text, const std::string& words) {
   return std::stod(text.substr(text.find(words) + words.size()));
 }
@@ -241,12 +250,14 @@ TEST_F(SpokenSentence, WithMoreThanTheTranscriptHasIsRefusedWithThePlace) {
   }
 }
 
-TEST_F(SpokenSentence, WithOneWordMoreThanTheTranscriptHasIsTold) {
+TEST_F(SpokenSentence, WithALittleMoreThanTheTranscriptHasIsTold) {
   const Transcript transcript{"please bring me six big blue"};
   Context context;
   std::string said;
   context.on_warning = [&](std::string_view message) { said += message; };
-  const auto aligned = Align{}(sentence.audio, &transcript, nullptr, nullptr, context);
+  Align align;
+  align.unwritten = 0.6;
+  const auto aligned = align(sentence.audio, &transcript, nullptr, nullptr, context);
   ASSERT_TRUE(aligned);
   EXPECT_EQ(aligned->phones.phones.back().label, "sil");
   ASSERT_THAT(said, HasSubstr("is not in the transcript: it counts as a pause"));
