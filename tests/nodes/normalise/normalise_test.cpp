@@ -38,9 +38,17 @@ TEST(MeanCenter, RefusesNanAndNoFrames) {
   EXPECT_THROW(MeanCenter{}(track(Eigen::Vector2d(1, NAN))), std::runtime_error);
 }
 
+TEST(Restore, PutsBackARowAFrame) {
+  const Track t = track(Eigen::MatrixXd::Random(4, 2)), offset = track(Eigen::MatrixXd::Random(4, 2));
+  EXPECT_EQ(Restore{}(t, offset).values, t.values + offset.values);
+  const Track shorter = track(offset.values.topRows(3));
+  EXPECT_EQ(Restore{}(t, shorter).values.row(3), t.values.row(3) + offset.values.row(2));
+}
+
 TEST(Restore, RefusesAMeanThatDoesNotFit) {
   EXPECT_THROW(Restore{}(track(Eigen::MatrixXd::Zero(2, 3)), track(Eigen::MatrixXd::Zero(1, 2))), std::runtime_error);
-  EXPECT_THROW(Restore{}(track(Eigen::MatrixXd::Zero(2, 3)), track(Eigen::MatrixXd::Zero(2, 3))), std::runtime_error);
+  EXPECT_THROW(Restore{}(track(Eigen::MatrixXd::Zero(2, 3)), track(Eigen::MatrixXd::Zero(0, 3))), std::runtime_error);
+  EXPECT_THROW(Restore{}(track(Eigen::MatrixXd::Zero(5, 3)), track(Eigen::MatrixXd::Zero(2, 3))), std::runtime_error);
 }
 
 TEST(MeanOf, WeighsRowsAlike) {

@@ -9,8 +9,10 @@ namespace {
 TEST(Register, DescribesEveryNode) {
   Registry registry;
   register_normalise(registry);
-  EXPECT_THAT(registry.names(), testing::ElementsAre("normalise.mean_center", "normalise.mean_of", "normalise.restore",
-                                                     "normalise.zscore_apply", "normalise.zscore_learn"));
+  EXPECT_THAT(registry.names(),
+              testing::ElementsAre("normalise.ica", "normalise.mean_center", "normalise.mean_of",
+                                   "normalise.rank_style", "normalise.remove_style", "normalise.restore",
+                                   "normalise.zscore_apply", "normalise.zscore_learn"));
 }
 
 }  // namespace
