@@ -93,12 +93,37 @@ std::vector<face::Moment> record_face(const PhoneTrack& phones, const Delivery& 
   return moments;
 }
 
-LandmarkTrack mark(const std::vector<face::Moment>& moments, Rational fps, int height) {
+std::vector<face::Bound> points_of(PointScheme scheme) {
+  auto points = face::landmarks();
+  if (scheme == PointScheme::lips56) points.erase(points.begin() + 36, points.begin() + 48);
+  if (scheme == PointScheme::demnow69) points.push_back(face::bind({face::centre_x, 88}, face::Part::brow));
+  return points;
+}
+
+LandmarkTrack mark(const std::vector<face::Moment>& moments, Rational fps, int height, PointScheme scheme) {
   LandmarkTrack track;
   track.rate = fps;
-  track.scheme = "ibug68";
-  const auto points = face::landmarks();
+  for (const auto& entry : enum_names<PointScheme>.entries)
+    if (entry.value == scheme) track.scheme = entry.name;
+  const auto points = points_of(scheme);
   for (const auto& m : moments) track.frames.push_back(face::picture_landmarks(points, m, height));
+  return track;
+}
+
+/// Where the articulators and the head are, in the order of their names.
+Track truth(const std::vector<face::Moment>& moments, Rational fps) {
+  Track track;
+  track.rate = fps;
+  track.start = 0.5 / fps.value();
+  track.names = {"jaw",        "width",      "protrusion", "upper_lip", "lower_lip", "closure", "bite",
+                 "tongue_tip", "tongue_out", "dx",         "dy",        "roll",      "scale",   "yaw",
+                 "pitch",      "blink",      "brow",       "gaze_x",    "gaze_y"};
+  track.values.resize(std::ssize(moments), std::ssize(track.names));
+  for (Eigen::Index n = 0; n < track.frames(); ++n) {
+    const auto& [a, h] = moments[static_cast<std::size_t>(n)];
+    track.values.row(n) << a.jaw, a.width, a.protrusion, a.upper_lip, a.lower_lip, a.closure, a.bite, a.tongue_tip,
+        a.tongue_out, h.dx, h.dy, h.roll, h.scale, h.yaw, h.pitch, h.blink, h.brow, h.gaze_x, h.gaze_y;
+  }
   return track;
 }
 
@@ -125,7 +150,8 @@ Recording record(const BuiltinSpeaker& node, const std::shared_ptr<const face::P
   r.phones = PhoneTrack{embed(said.phones.phones, timing.seconds)};
   r.words = WordTrack{embed(said.words.words, timing.seconds)};
   auto moments = record_face(*r.phones, delivery, timing.frames, node.fps, random);
-  r.landmarks = mark(moments, node.fps, static_cast<int>(node.height));
+  r.landmarks = mark(moments, node.fps, static_cast<int>(node.height), node.points);
+  r.visual = truth(moments, node.fps);
   r.audio = [=, rate = node.sample_rate] { return record_sound(text, delivery, timing.seconds, rate, seed, id); };
   r.key = [key = KeyMaker()
                      .add(fmt::format("built-in speaker: seed {}, height {}, fps {}, sample rate {}", node.seed,
@@ -171,7 +197,9 @@ Stream<Recording> BuiltinSpeaker::operator()() const {
 }
 
 void describe(Description<BuiltinSpeaker>& d) {
-  d.type("speaker.builtin").version(1).summary("a synthetic speaker: sound, pictures, phones, words and landmarks");
+  d.type("speaker.builtin")
+      .version(2)
+      .summary("a synthetic speaker: sound, pictures, phones, words, landmarks and what moved the face");
   d.output("recording", "one item a sentence");
   d.param("sentences", &BuiltinSpeaker::sentences)
       .within(1, static_cast<double>(speaker_sentence_count()))

@@ -220,6 +220,39 @@ TEST(BuiltinSpeaker, SplitsKeysAndParts) {
   EXPECT_EQ(r.landmarks->scheme, "ibug68");
 }
 
+TEST(BuiltinSpeaker, TellsWhatMovedTheFace) {
+  const auto all = all_of(few(2));
+  const auto& r = all[0].value;
+  ASSERT_TRUE(r.visual);
+  EXPECT_EQ(r.visual->frames(), r.video().source->frames());
+  EXPECT_EQ(std::ssize(r.visual->names), r.visual->dimension());
+  std::vector<double> jaw, open;
+  for (Eigen::Index t = 0; t < r.visual->frames(); ++t) {
+    jaw.push_back(r.visual->values(t, 0));
+    open.push_back(opening(r.landmarks->frames[static_cast<std::size_t>(t)]));
+  }
+  EXPECT_GT(correlation(jaw, open), 0.8);
+}
+
+TEST(BuiltinSpeaker, IsMarkedInEveryScheme) {
+  auto node = few(2);
+  const auto usual = *all_of(node)[0].value.landmarks;
+  node.points = PointScheme::lips56;
+  const auto lips = *all_of(node)[0].value.landmarks;
+  node.points = PointScheme::demnow69;
+  const auto demnow = *all_of(node)[0].value.landmarks;
+  EXPECT_EQ(lips.scheme, "lips56");
+  EXPECT_EQ(demnow.scheme, "demnow69");
+  for (std::size_t t = 0; t < usual.frames.size(); ++t) {
+    ASSERT_EQ(lips.frames[t].rows(), 56);
+    EXPECT_EQ(lips.frames[t].topRows(36), usual.frames[t].topRows(36));
+    EXPECT_EQ(lips.frames[t].bottomRows(20), usual.frames[t].bottomRows(20));
+    ASSERT_EQ(demnow.frames[t].rows(), 69);
+    EXPECT_EQ(demnow.frames[t].topRows(68), usual.frames[t]);
+    EXPECT_LT(demnow.frames[t](68, 1), demnow.frames[t].topRows(68).col(1).minCoeff() - 5);
+  }
+}
+
 TEST(BuiltinSpeaker, SoundPicturesAndLabelsAreEquallyLong) {
   auto node = few(2);
   node.fps = Rational(30000, 1001);
