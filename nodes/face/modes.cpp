@@ -1,43 +1,121 @@
 #include "nodes/face/modes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <stdexcept>
 
 #include "nodes/face/render.h"
 #include "nodes/types/picture_file.h"
 
 namespace talkgraph {
+namespace {
 
-Artifact FaceModes::operator()(const AppearanceModel& model, Context& context) const {
-  const auto rows = std::max<Eigen::Index>(1, std::min<Eigen::Index>(modes, model.modes()));
-  std::vector<cv::Mat> lines;
-  for (Eigen::Index mode = 0; mode < rows; ++mode) {
-    std::vector<cv::Mat> line;
-    for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-      Eigen::VectorXd c = Eigen::VectorXd::Zero(model.modes());
-      if (mode < model.modes()) c(mode) = share * deviations * std::sqrt(model.combined_variances(mode));
-      line.push_back(draw_face(model, c, 1.5, 255));
-    }
-    lines.emplace_back();
-    cv::hconcat(line, lines.back());
+constexpr int bar_height = 22, margin = 40;
+
+/// What is varied: faces of parameters `origin` + deviations · a column of `directions`.
+struct Variation {
+  AppearanceModel model;
+  Eigen::VectorXd origin;
+  Eigen::MatrixXd directions;
+  std::string title;
+};
+
+Variation along_axes(AppearanceModel model, std::string title) {
+  const auto count = model.modes();
+  Eigen::MatrixXd directions = model.combined_variances.cwiseSqrt().asDiagonal();
+  return {std::move(model), Eigen::VectorXd::Zero(count), std::move(directions), std::move(title)};
+}
+
+SharedMatrix share(Eigen::MatrixXf matrix) { return std::make_shared<const Eigen::MatrixXf>(std::move(matrix)); }
+
+/// The model driven by its shape parameters alone.
+Variation of_shape(AppearanceModel model) {
+  model.shape_per_mode = model.shape_modes;
+  model.combined_variances = model.shape_variances;
+  model.levels[0].appearance = share(Eigen::MatrixXf::Zero(model.texture_modes->rows(), model.modes()));
+  return along_axes(std::move(model), "modes of shape");
+}
+
+/// The model driven by its texture parameters alone.
+Variation of_texture(AppearanceModel model) {
+  model.combined_variances = model.texture_variances;
+  model.shape_per_mode = Eigen::MatrixXd::Zero(2 * model.points(), model.modes());
+  model.levels[0].appearance = model.texture_modes;
+  return along_axes(std::move(model), "modes of texture");
+}
+
+Variation of_components(const AppearanceModel& model, const IndependentComponents& components) {
+  if (components.dimension() != model.modes())
+    throw std::runtime_error(
+        fmt::format("the independent components are of {} appearance parameters, the face model has {}: they were "
+                    "learnt with another model",
+                    components.dimension(), model.modes()));
+  return {model, components.mean.transpose(), components.mixing, "independent components"};
+}
+
+Variation variation(const AppearanceModel& model, ModeKind of, const IndependentComponents* components) {
+  if (components && of != ModeKind::combined)
+    throw std::runtime_error("independent components are of the combined parameters: leave \"of\" at combined");
+  if (components) return of_components(model, *components);
+  switch (of) {
+    case ModeKind::shape:
+      return of_shape(model);
+    case ModeKind::texture:
+      return of_texture(model);
+    default:
+      return along_axes(model, "modes of the face model");
   }
-  cv::Mat sheet;
-  cv::vconcat(lines, sheet);
-  const Artifact artifact{name + ".png", "modes of the face model"};
+}
+
+void write(cv::Mat& sheet, const std::string& text, cv::Point at) {
+  cv::putText(sheet, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.5, {}, 1, cv::LINE_AA);
+}
+
+}  // namespace
+
+Artifact FaceModes::operator()(const AppearanceModel& model, const IndependentComponents* components,
+                               Context& context) const {
+  const auto varied = variation(model, of, components);
+  const auto count = varied.directions.cols();
+  const auto rows = std::max<Eigen::Index>(1, std::min<Eigen::Index>(modes, count));
+  const auto face = [&](Eigen::Index mode, double steps) {
+    Eigen::VectorXd c = varied.origin;
+    if (mode < count) c += steps * varied.directions.col(mode);
+    return draw_face(varied.model, c, zoom, 255);
+  };
+  const cv::Size size = face(0, 0).size();
+  cv::Mat sheet(bar_height + static_cast<int>(rows) * size.height, margin + 5 * size.width, CV_8UC3,
+                cv::Scalar::all(255));
+  for (int column = 0; column < 5; ++column) {
+    const double steps = deviations * (column - 2) / 2;
+    const int left = margin + column * size.width;
+    write(sheet, column == 2 ? "mean" : fmt::format("{:+g} sd", steps), {left + size.width / 2 - 20, bar_height - 6});
+    for (int row = 0; row < rows; ++row)
+      face(row, steps).copyTo(sheet(cv::Rect({left, bar_height + row * size.height}, size)));
+  }
+  for (int row = 0; row < rows; ++row)
+    write(sheet, std::to_string(row + 1), {10, bar_height + row * size.height + size.height / 2});
+  const Artifact artifact{name + ".png", varied.title};
   write_picture(context.file(artifact.path), sheet);
   return artifact;
 }
 
 void describe(Description<FaceModes>& d) {
   d.type("face.modes")
-      .version(1)
-      .summary("the modes of variation of a face model, as a picture")
-      .source("Thesis Appendix B")
+      .version(2)
+      .summary("the modes of variation of a face model, or its independent components, as a picture")
+      .source("Thesis Appendices B and C")
       .sink();
-  d.input("model", "of the face").output("picture", "a PNG file");
+  d.input("model", "of the face")
+      .input("components", "of its parameters, by normalise.ica, to be shown instead of the modes")
+      .output("picture", "a PNG file");
+  d.param("of", &FaceModes::of).doc("modes of shape and texture together, of shape alone, or of texture alone");
   d.param("modes", &FaceModes::modes).at_least(1).doc("rows: the modes of the largest variance");
   d.param("deviations", &FaceModes::deviations).positive().doc("standard deviations shown each way");
+  d.param("zoom", &FaceModes::zoom).within(0.1, 20).doc("pixels per pixel of the mean shape");
   d.param("name", &FaceModes::name).doc("of the file below the run folder, without .png");
 }
 

@@ -8,8 +8,10 @@
 #include "nodes/face/landmarks.h"
 #include "nodes/face/modes.h"
 #include "nodes/face/parameters.h"
+#include "nodes/face/prototype_sheet.h"
 #include "nodes/face/prototypes.h"
 #include "nodes/face/render.h"
+#include "nodes/face/report.h"
 #include "nodes/face/shapes.h"
 #include "nodes/face/side_by_side.h"
 #include "nodes/face/strip.h"
@@ -32,6 +34,9 @@ void register_face(Registry& registry) {
   registry.add<SideBySide>();
   registry.add<FrameStrip>();
   registry.add<FaceModes>();
+  registry.add<FaceReport>();
+  registry.add<PrototypeSheet>();
+  registry.add<ModelSheet>();
 }
 
 }  // namespace talkgraph

@@ -2,6 +2,7 @@
 
 #include "nodes/plot/bars.h"
 #include "nodes/plot/columns.h"
+#include "nodes/plot/curves.h"
 #include "nodes/plot/mean_trajectory.h"
 #include "nodes/plot/phone_means.h"
 #include "nodes/plot/tracks.h"
@@ -14,6 +15,7 @@ void register_plot(Registry& registry) {
   registry.add<PhoneMeans>();
   registry.add<PlotBars>();
   registry.add<PlotColumns>();
+  registry.add<PlotCurves>();
   registry.add<PlotTracks>();
   registry.add<PlotTrajectories>();
 }

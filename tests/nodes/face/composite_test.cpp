@@ -219,11 +219,11 @@ TEST(Sinks, WriteTheirPictures) {
   const auto strip = FrameStrip{}(talking(3), &labels, context);
   EXPECT_EQ(strip.path, "strips/utterance.png");
   EXPECT_EQ(cv::imread((context.folder / strip.path).string()).cols, 3 * 160);
-  const auto modes = FaceModes{}(model(), context);
+  const auto modes = FaceModes{}(model(), nullptr, context);
   EXPECT_FALSE(cv::imread((context.folder / modes.path).string()).empty());
   EXPECT_THROW(FrameStrip{}(video_from_frames({}, Rational(25)), nullptr, context), std::runtime_error);
   context.folder = "/proc/nowhere";
-  EXPECT_THROW(FaceModes{}(model(), context), std::runtime_error);
+  EXPECT_THROW(FaceModes{}(model(), nullptr, context), std::runtime_error);
 }
 
 }  // namespace

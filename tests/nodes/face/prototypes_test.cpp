@@ -89,6 +89,64 @@ TEST(ChoosePrototypes, DependsOnTheSeedAlone) {
   EXPECT_TRUE(differs);
 }
 
+Prototypes cover(const Corpus& c, int per_phone) {
+  Random random(1);
+  Context context;
+  ChoosePrototypes node;
+  node.per_phone = per_phone;
+  node.choose = PrototypeChoice::coverage;
+  return node(c.videos, c.landmarks, c.labels, random, context);
+}
+
+/// Greatest distance of any frame from the nearest prototype, wherever the head is.
+double uncovered(const Corpus& c, const Prototypes& p) {
+  double worst = 0;
+  for (const auto& shape : c.landmarks[0].frames) {
+    double nearest = 1e9;
+    for (const auto& chosen : p.shapes) {
+      const Shape a = shape.rowwise() - shape.row(0), b = chosen.rowwise() - chosen.row(0);
+      nearest = std::min(nearest, (a - b).norm());
+    }
+    worst = std::max(worst, nearest);
+  }
+  return worst;
+}
+
+TEST(ChoosePrototypes, CoverTheSpaceOfShapes) {
+  Corpus c;
+  std::vector<cv::Mat> pictures;
+  LandmarkTrack l;
+  for (int t = 0; t < 60; ++t) {
+    test::SyntheticFace f;
+    f.open = t % 20 == 19 ? 0.1 * (t / 20 + 7) : 0.2 + 0.01 * t / 60;
+    pictures.push_back(test::draw(f));
+    l.frames.push_back(test::landmarks(f));
+  }
+  c.videos.add("a", video_from_frames(pictures, Rational(25)));
+  c.landmarks.add("a", l);
+  c.labels.add("a", FrameLabels{std::vector<std::string>(60, "aa"), Rational(25)});
+  const auto p = cover(c, 4);
+  EXPECT_EQ(p.shapes.size(), 4u);
+  EXPECT_LT(uncovered(c, p), 0.5) << "the three mouths that are open, and one that is not";
+  EXPECT_GT(uncovered(c, choose(c, 4)), 5) << "chance misses them";
+}
+
+TEST(ChoosePrototypes, CoverWithAsManyAsAtRandom) {
+  Corpus c;
+  c.videos.add("a", clip(6));
+  c.landmarks.add("a", marks(6));
+  c.labels.add("a", FrameLabels{{"sil", "aa", "aa", "aa", "aa", "b"}, Rational(25)});
+  EXPECT_EQ(cover(c, 3).images.size(), choose(c, 3).images.size());
+  EXPECT_EQ(cover(c, 9).images.size(), 6u);
+  c.videos.add("b", clip(1));
+  LandmarkTrack fewer = marks(1);
+  fewer.frames[0].conservativeResize(5, 2);
+  c.landmarks.add("b", fewer);
+  c.labels.add("b", FrameLabels{{"aa"}, Rational(25)});
+  EXPECT_THROW(cover(c, 3), std::runtime_error);
+  EXPECT_THROW(cover({}, 3), std::runtime_error);
+}
+
 TEST(ChoosePrototypes, SaysSoWhenNothingCanServe) { EXPECT_THROW(choose({}, 4), std::runtime_error); }
 
 }  // namespace
