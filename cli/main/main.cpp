@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "cli/cache.h"
+#include "cli/corpus.h"
 #include "cli/example.h"
 #include "cli/experiment.h"
 #include "cli/look.h"
@@ -195,6 +196,29 @@ int main(int argc, char** argv) {
   speak_app->add_option("--threads", speech.threads, "threads")->check(CLI::Range(1, 256));
   add_progress(*speak_app, speech.progress);
 
+  CorpusCommand corpus;
+  auto* corpus_app = app.add_subcommand("corpus", "make a corpus of a folder of clips, or look one over");
+  corpus_app->require_subcommand(1);
+  auto* corpus_check_app =
+      corpus_app->add_subcommand("check", "clips, rates, damage, sound against picture, phones, and what is missing");
+  corpus_check_app->add_option("corpus", corpus.source, "manifest, or folder of the GRID corpus")->required();
+  corpus_check_app->add_flag("--json", corpus.json, "the same for programs");
+  corpus_check_app->add_option("--threads", run.threads, "threads")->check(CLI::Range(1, 256));
+  corpus_check_app->add_option("--cache", run.cache, "the folder of kept results, if not the usual one");
+  corpus_check_app->add_flag("--no-cache", no_cache, "compute everything, keep nothing");
+  add_progress(*corpus_check_app, run.progress);
+  auto* corpus_new_app = corpus_app->add_subcommand("new", "write a manifest of the clips in a folder");
+  corpus_new_app->add_option("folder", corpus.source, "with videos, and what belongs to them beside them")->required();
+  corpus_new_app->add_option("-o,--output", corpus.output, "the manifest (default: manifest.json in the folder)");
+  corpus_new_app->add_flag("--overwrite", corpus.overwrite, "replace a manifest that is there");
+  corpus_new_app->add_option("--validation", corpus.validation, "share of the clips for validation")
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
+  corpus_new_app->add_option("--test", corpus.test, "share of the clips for the test")
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
+  corpus_new_app->add_option("--rate", corpus.rate, "frames per second of folders of pictures");
+
   auto* check_app = app.add_subcommand("check", "check graphs without running them");
   check_app->add_option("graphs", files, "graph files")->required();
   check_app->add_option("--set", sets, "path=value")->take_all()->allow_extra_args(false);
@@ -249,6 +273,8 @@ int main(int argc, char** argv) {
       if (*prune_app) return fmt::print("{} freed\n", size_text(open_cache(run)->prune(keep))), success;
       if (*why_app) return why(graph, registry, sets, run, word);
       if (*speak_app) return speak(speech, registry);
+      if (*corpus_check_app) return check_corpus(corpus, run, registry);
+      if (*corpus_new_app) return new_corpus(corpus);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
       if (*diff_app) return diff(graph, other.empty() ? graph : other, registry, sets);

@@ -2,6 +2,7 @@
 
 #include "nodes/corpus/files.h"
 #include "nodes/corpus/grid.h"
+#include "nodes/corpus/inspect.h"
 #include "nodes/corpus/manifest.h"
 #include "nodes/corpus/parts.h"
 #include "nodes/corpus/pick.h"
@@ -12,6 +13,7 @@ namespace talkgraph {
 
 void register_corpus(Registry& registry) {
   registry.add<Grid>();
+  registry.add<Inspect>();
   registry.add<Manifest>();
   registry.add<SoundFiles>();
   registry.add<Pick>();

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
 #include <mutex>
+#include <sstream>
 #include <stdexcept>
 
 // The state aligner of libpocketsphinx 0.8+5prealpha is exported but has no
@@ -334,6 +336,14 @@ SphinxAligner::~SphinxAligner() = default;
 
 bool SphinxAligner::knows(const std::string& word) const {
   return dict_wordid(head(decoder_->states.get()).dict, word.c_str()) >= 0;
+}
+
+std::vector<std::string> SphinxAligner::pronunciation(const std::string& word) const {
+  const std::unique_ptr<char, void (*)(void*)> found(ps_lookup_word(decoder_->states.get(), word.c_str()), std::free);
+  std::vector<std::string> phones;
+  std::istringstream text(found ? found.get() : "");
+  for (std::string phone; text >> phone;) phones.push_back(phone);
+  return phones;
 }
 
 void SphinxAligner::learn(const std::string& word, const std::vector<std::string>& phones) {

@@ -38,6 +38,8 @@ class SphinxAligner {
 
   /// Whether the dictionary holds the word (lower case).
   bool knows(const std::string& word) const;
+  /// Its phones as the dictionary has them first, "HH", "AH" ...; none if it does not hold the word.
+  std::vector<std::string> pronunciation(const std::string& word) const;
   /// Adds a word with its CMU phones ("hh", "ah", ...).
   void learn(const std::string& word, const std::vector<std::string>& phones);
 

@@ -1,0 +1,337 @@
+#include "cli/corpus.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+
+#include "graph/output_file.h"
+#include "nodes/corpus/new_manifest.h"
+#include "nodes/types/recording.h"
+#include "nodes/types/visemes.h"
+
+namespace talkgraph::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* parts[] = {"transcript", "words", "phones", "landmarks"};
+constexpr double tolerance = 0.25;  ///< seconds that sound and picture may differ by, as in corpus.parts
+
+double value(const Scores& scores, const std::string& name) {
+  const auto at = scores.values.find(name);
+  return at == scores.values.end() ? NAN : at->second;
+}
+
+/// How many clips have which value, the most frequent first.
+std::vector<std::pair<double, int>> census(const std::vector<ClipFindings>& clips, const std::string& name) {
+  std::map<double, int> counts;
+  for (const auto& clip : clips)
+    if (const double v = value(clip.findings, name); !std::isnan(v)) ++counts[v];
+  std::vector<std::pair<double, int>> out(counts.begin(), counts.end());
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  return out;
+}
+
+/// Correlations by lag in frames.
+using Lags = std::map<int, double>;
+
+Lags lags_of(const ClipFindings& clip) {
+  Lags out;
+  for (const auto& [name, r] : clip.findings.values)
+    if (name.starts_with("lag ")) out[std::stoi(name.substr(4))] = r;
+  return out;
+}
+
+std::pair<int, double> peak(const Lags& lags) {
+  const auto best = std::max_element(lags.begin(), lags.end(), [](auto a, auto b) { return a.second < b.second; });
+  return *best;
+}
+
+/// The mean correlation of all clips at the lags that all have; nothing without a clip.
+struct Offset {
+  Lags mean;
+  int clips = 0;
+};
+Offset mean_lags(const std::vector<ClipFindings>& clips) {
+  Offset out;
+  std::map<int, int> counts;
+  for (const auto& clip : clips) {
+    const auto lags = lags_of(clip);
+    out.clips += !lags.empty();
+    for (const auto& [lag, r] : lags) out.mean[lag] += r, ++counts[lag];
+  }
+  for (const auto& [lag, count] : counts) {
+    if (count == out.clips)
+      out.mean[lag] /= count;
+    else
+      out.mean.erase(lag);
+  }
+  return out;
+}
+
+/// The top of the parabola through the peak and its neighbours, frames.
+double between_frames(const Lags& lags, int at) {
+  const auto before = lags.find(at - 1), after = lags.find(at + 1);
+  if (before == lags.end() || after == lags.end()) return at;
+  const double curve = before->second - 2 * lags.at(at) + after->second;
+  return curve < 0 ? at + 0.5 * (before->second - after->second) / curve : at;
+}
+
+std::string share(double count, double of, const char* what) { return fmt::format("{:g} of {:g} {}", count, of, what); }
+
+std::vector<std::string> problems_of(const ClipFindings& clip, double usual_fps, const Offset& offset) {
+  std::vector<std::string> out;
+  const auto get = [&](const char* name) { return value(clip.findings, name); };
+  const double frames = get("frames");
+  if (get("damaged") > 0)
+    out.push_back(share(get("damaged"), frames, "frames are damaged") +
+                  fmt::format(" ({:g} to {:g})", get("damaged_from"), get("damaged_to")));
+  if (get("sound_peak") < 1e-3) out.push_back("the sound is silent");
+  if (std::abs(get("sound_seconds") - get("picture_seconds")) > tolerance)
+    out.push_back(
+        fmt::format("the sound lasts {:.2f} s, the picture {:.2f} s", get("sound_seconds"), get("picture_seconds")));
+  if (!std::isnan(get("fps")) && get("fps") != usual_fps)
+    out.push_back(fmt::format("{:.6g} frames a second, most clips have {:.6g}", get("fps"), usual_fps));
+  if (std::abs(get("landmark_frames") - frames) > 2)
+    out.push_back(fmt::format("landmarks of {:g} frames, the picture has {:g}", get("landmark_frames"), frames));
+  if (get("landmark_gaps") > 0)
+    out.push_back(share(get("landmark_gaps"), get("landmark_frames"), "frames lack landmarks"));
+  if (const auto lags = lags_of(clip); !lags.empty() && !offset.mean.empty()) {
+    const int usual = peak(offset.mean).first;
+    const auto [lag, r] = peak(lags);
+    const bool clear = r >= 0.5 && lags.contains(usual) && r >= lags.at(usual) + 0.25;
+    if (std::abs(lag - usual) >= 4 && clear)
+      out.push_back(fmt::format("the picture seems to be {} frames {} against the other clips", std::abs(lag - usual),
+                                lag > usual ? "late" : "early"));
+  }
+  return out;
+}
+
+/// The phones that a corpus can have: CMU's, and BEEP's where a label is of BEEP alone.
+std::vector<std::string> phone_set(const std::map<std::string, double>& seen) {
+  constexpr std::string_view beep_alone[] = {"ax", "ea", "ia", "oh", "ua"};
+  const auto is_beep_alone = [&](std::string_view phone) {
+    return std::find(std::begin(beep_alone), std::end(beep_alone), phone) != std::end(beep_alone);
+  };
+  const bool beep = std::any_of(seen.begin(), seen.end(), [&](const auto& p) { return is_beep_alone(p.first); });
+  std::vector<std::string> out;
+  for (const auto& [phone, viseme] : kVisemes)
+    if (beep || !is_beep_alone(phone)) out.emplace_back(phone);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+Json counts(const std::vector<std::pair<double, int>>& census) {
+  Json out = Json::array();
+  for (const auto& [v, count] : census) out.push_back({{"value", v}, {"clips", count}});
+  return out;
+}
+
+std::string duration(double seconds) {
+  const auto whole = std::lround(seconds);
+  return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{} min {} s", whole / 60, whole % 60);
+}
+
+/// "25 (256), 30 (2)", a single one without its count.
+std::string census_text(const Json& census) {
+  std::vector<std::string> out;
+  for (const auto& entry : census)
+    out.push_back(census.size() == 1
+                      ? fmt::format("{:.6g}", entry["value"].get<double>())
+                      : fmt::format("{:.6g} ({})", entry["value"].get<double>(), entry["clips"].get<int>()));
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
+std::string some_of(const Json& names) {
+  constexpr std::size_t most = 5;
+  std::string out;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i) out += (i ? ", " : "") + names[i].get<std::string>();
+  return names.size() > most ? out + ", ..." : out;
+}
+
+std::string lacking_text(const Json& report) {
+  std::string out;
+  const auto all = report["clips"].size();
+  for (const char* part : parts) {
+    const auto& names = report["lacking"][part];
+    if (names.empty())
+      out += fmt::format("  {:<12} all clips\n", part);
+    else if (names.size() == all)
+      out += fmt::format("  {:<12} none\n", part);
+    else
+      out += fmt::format("  {:<12} {} of {} clips, not {}\n", part, all - names.size(), all, some_of(names));
+  }
+  return out;
+}
+
+std::string phone_text(const Json& report) {
+  std::string out;
+  int column = 0;
+  for (const auto& [phone, count] : report["phones"].items())
+    out += fmt::format("{}{:<3}{:>6}", column++ % 10 == 0 ? "\n  " : "  ", phone, count.get<double>());
+  return out + "\n";
+}
+
+std::string offset_text(const Json& offset) {
+  if (offset.is_null()) return "not measured: no pictures, or nothing in them moves\n";
+  const double frames = offset["frames"];
+  const std::string where = std::abs(frames) < 0.5 ? "in time"
+                            : frames > 0           ? "the mouth is late"
+                                                   : "the mouth is early";
+  return fmt::format("{:+.1f} frames, {:+.0f} ms: {} (correlation {:.2f}, {} clips)\n", frames,
+                     offset["milliseconds"].get<double>(), where, offset["correlation"].get<double>(),
+                     offset["clips"].get<int>());
+}
+
+/// A table of all clips, a line each.
+std::string clip_table(const Json& report) {
+  std::string out = fmt::format("{:<16} {:<11} {:>8} {:>8} {:>9} {:>8} {:>8}\n", "clip", "split", "sound s", "frames",
+                                "frames/s", "damaged", "lag");
+  for (const auto& clip : report["clips"]) {
+    const auto number = [&](const char* name, const char* format) {
+      const auto& f = clip["findings"];
+      return f.contains(name) ? fmt::format(fmt::runtime(format), f[name].get<double>()) : std::string("-");
+    };
+    out += fmt::format("{:<16} {:<11} {:>8} {:>8} {:>9} {:>8} {:>8}\n", clip["id"].get<std::string>(),
+                       clip["split"].get<std::string>(), number("sound_seconds", "{:.2f}"), number("frames", "{:g}"),
+                       number("fps", "{:.6g}"), number("damaged", "{:g}"),
+                       clip["lag"].is_null() ? "-" : fmt::format("{:+d}", clip["lag"].get<int>()));
+  }
+  return out;
+}
+
+Json graph_of(const std::string& source) {
+  const auto path = fs::absolute(source).string();
+  const Json recordings = fs::is_directory(source) ? Json{{"type", "corpus.grid"}, {"params", {{"folder", path}}}}
+                                                   : Json{{"type", "corpus.manifest"}, {"params", {{"file", path}}}};
+  return {
+      {"nodes",
+       {{"recordings", recordings}, {"inspect", {{"type", "corpus.inspect"}, {"in", {{"recording", "recordings"}}}}}}},
+      {"outputs", {{"recordings", "recordings"}, {"findings", "inspect.findings"}, {"phones", "inspect.phones"}}}};
+}
+
+std::vector<ClipFindings> findings_of(const RunResult& result) {
+  std::map<std::string, const Scores*> phones;
+  std::map<std::string, std::string> splits;
+  for (const auto& [id, v] : result.output("phones").items) phones[id] = &v.get<Scores>();
+  for (const auto& [id, v] : result.output("recordings").items) splits[id] = v.get<Recording>().split;
+  std::vector<ClipFindings> out;
+  for (const auto& [id, v] : result.output("findings").items)
+    out.push_back({id, splits[id], v.get<Scores>(), *phones.at(id)});
+  return out;
+}
+
+}  // namespace
+
+Json corpus_report(const std::vector<ClipFindings>& clips) {
+  Json report = {{"clips", Json::array()}, {"splits", Json::object()}, {"phones", Json::object()}};
+  const auto fps = census(clips, "fps");
+  const auto offset = mean_lags(clips);
+  std::map<std::string, double> phones;
+  double sound = 0, picture = 0;
+  for (const char* part : parts) report["lacking"][part] = Json::array();
+  for (const auto& clip : clips) {
+    const auto lags = lags_of(clip);
+    Json findings = Json::object();
+    for (const auto& [name, v] : clip.findings.values)
+      if (!name.starts_with("lag ")) findings[name] = v;
+    report["clips"].push_back({{"id", clip.id},
+                               {"split", clip.split},
+                               {"findings", findings},
+                               {"lag", lags.empty() ? Json() : Json(peak(lags).first)},
+                               {"problems", problems_of(clip, fps.empty() ? 0 : fps.front().first, offset)}});
+    report["splits"][clip.split] = report["splits"].value(clip.split, 0) + 1;
+    for (const char* part : parts)
+      if (!(value(clip.findings, part) > 0)) report["lacking"][part].push_back(clip.id);
+    for (const auto& [phone, count] : clip.phones.values) phones[phone] += count;
+    const auto seconds = [&](const char* name) {
+      const double s = value(clip.findings, name);
+      return std::isnan(s) ? 0 : s;
+    };
+    sound += seconds("sound_seconds");
+    picture += seconds("picture_seconds");
+  }
+  report["sound_seconds"] = sound;
+  report["picture_seconds"] = picture;
+  report["fps"] = counts(fps);
+  report["sound_rate"] = counts(census(clips, "sound_rate"));
+  report["missing_phones"] = Json::array();
+  for (const auto& phone : phone_set(phones)) {
+    if (!phones.contains(phone)) report["missing_phones"].push_back(phone);
+    report["phones"][phone] = phones.contains(phone) ? phones[phone] : 0;
+  }
+  report["offset"] = nullptr;
+  if (!offset.mean.empty()) {
+    const auto [lag, r] = peak(offset.mean);
+    const double frames = between_frames(offset.mean, lag);
+    report["offset"] = {{"frames", frames},
+                        {"milliseconds", 1000 * frames / fps.front().first},
+                        {"correlation", r},
+                        {"clips", offset.clips}};
+  }
+  return report;
+}
+
+std::string report_text(const Json& report) {
+  std::vector<std::string> splits;
+  for (const auto& [split, count] : report["splits"].items())
+    splits.push_back(fmt::format("{} {}", count.get<int>(), split));
+  std::string out = clip_table(report);
+  out += fmt::format("\n{} clips ({}), {} of sound, {} of pictures\n", report["clips"].size(), fmt::join(splits, ", "),
+                     duration(report["sound_seconds"]), duration(report["picture_seconds"]));
+  out +=
+      fmt::format("frames a second: {}; sound: {} Hz\n", census_text(report["fps"]), census_text(report["sound_rate"]));
+  out += "sound against picture: " + offset_text(report["offset"]);
+  out += "what clips have:\n" + lacking_text(report);
+  out += fmt::format("phones: {} of {} occur", report["phones"].size() - report["missing_phones"].size(),
+                     report["phones"].size());
+  if (!report["missing_phones"].empty()) {
+    std::vector<std::string> missing = report["missing_phones"];
+    out += fmt::format("; missing: {}", fmt::join(missing, " "));
+  }
+  out += phone_text(report);
+  std::string problems;
+  for (const auto& clip : report["clips"])
+    for (const auto& problem : clip["problems"])
+      problems += fmt::format("  {}: {}\n", clip["id"].get<std::string>(), problem.get<std::string>());
+  return out + (problems.empty() ? "nothing is wrong with any clip\n" : "look at:\n" + problems);
+}
+
+int check_corpus(const CorpusCommand& command, RunCommand run, const Registry& registry) {
+  if (!fs::exists(command.source))
+    throw std::invalid_argument(command.source + ": there is no such manifest, nor folder of the GRID corpus");
+  Diagnostics diagnostics;
+  const auto graph = load_graph_text(command.source, graph_of(command.source).dump(), registry, diagnostics);
+  if (!graph) throw std::logic_error(diagnostics.str());
+  run.keep_going = true;
+  const Outcome outcome = run_graph(*graph, run);
+  if (!outcome.result) return outcome.code;
+  const Json report = corpus_report(findings_of(*outcome.result));
+  fmt::print("{}", command.json ? report.dump(1) + "\n" : report_text(report));
+  return outcome.code;
+}
+
+int new_corpus(const CorpusCommand& command) {
+  const fs::path folder = command.source;
+  const fs::path file = command.output.empty() ? folder / "manifest.json" : fs::path(command.output);
+  if (fs::exists(file) && !command.overwrite)
+    throw std::invalid_argument(file.string() + ": is there already; --overwrite replaces it, -o names another");
+  if (fs::absolute(file).lexically_normal().parent_path() != fs::absolute(folder / "").lexically_normal().parent_path())
+    throw std::invalid_argument(file.string() + ": a manifest lies in the folder of its clips");
+  NewManifest make{command.validation, command.test, {}};
+  if (!command.rate.empty()) make.rate = Rational::parse(command.rate);
+  const auto made = make(folder);
+  write_file(file, made.manifest.dump(1) + "\n");
+  for (const auto& note : made.notes) fmt::print(stderr, "{}\n", note);
+  fmt::print(stderr, "{} clips; talkgraph corpus check {} looks them over\n", made.manifest["clips"].size(),
+             file.string());
+  fmt::print("{}\n", file.string());
+  return success;
+}
+
+}  // namespace talkgraph::cli
