@@ -75,23 +75,25 @@ Eigen::VectorXd motion(const Video& video, const LandmarkTrack* landmarks, const
   return Eigen::Map<const Eigen::VectorXd>(change.data(), std::ssize(change));
 }
 
-/// How much each frame differs from the one before, likewise.
-Eigen::VectorXd change_of(const Eigen::VectorXd& values) {
-  Eigen::VectorXd out = values;
-  for (Eigen::Index t = 1; t < out.size(); ++t) out(t) = std::abs(values(t) - values(t - 1));
-  if (out.size() > 1) out(0) = out(1);
+/// Change since the frame before; of the first, none.
+Eigen::VectorXd change(const Eigen::VectorXd& values) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(values.size());
+  for (Eigen::Index t = 1; t < out.size(); ++t) out(t) = values(t) - values(t - 1);
   return out;
 }
 
+/// Motion goes with the envelope. Where the lips are known, so does the change of the gap between them with the
+/// envelope's change, and motion with the size of that: half as telling each, but sharper in time.
 Eigen::VectorXd lags(const Audio& audio, const Video& video, const LandmarkTrack* landmarks, int max_lag,
                      const Context& context) {
-  const auto* lips = landmarks ? lips_of(*landmarks) : nullptr;
-  if (lips && std::all_of(landmarks->frames.begin(), landmarks->frames.end(), is_whole)) {
-    const Eigen::VectorXd gap = point_distance(*landmarks, lips->upper, lips->lower);
-    return lag_correlations(gap, sound_envelope(audio, landmarks->rate, gap.size()), max_lag);
-  }
   const Eigen::VectorXd moved = motion(video, landmarks, context);
-  return lag_correlations(moved, change_of(sound_envelope(audio, video.source->rate(), moved.size())), max_lag);
+  const Eigen::VectorXd envelope = sound_envelope(audio, video.source->rate(), moved.size());
+  const Eigen::VectorXd by_motion = lag_correlations(moved, envelope, max_lag);
+  const auto* lips = landmarks ? lips_of(*landmarks) : nullptr;
+  if (!lips || !std::all_of(landmarks->frames.begin(), landmarks->frames.end(), is_whole)) return by_motion;
+  const Eigen::VectorXd gap = point_distance(*landmarks, lips->upper, lips->lower), rise = change(envelope);
+  return 0.5 * by_motion + 0.25 * lag_correlations(change(gap), rise, max_lag) +
+         0.25 * lag_correlations(moved, rise.cwiseAbs(), max_lag);
 }
 
 void inspect_video(const Recording& recording, const Audio& audio, int max_lag, Context& context, Scores& out) {

@@ -13,9 +13,8 @@ namespace talkgraph {
 ///   transcript, words, phones, landmarks, visual: 1 where the recording has them
 ///   landmark_frames, landmark_gaps (frames with a point that is not a number)
 ///   "lag -8" ... "lag 8": how much the mouth follows the sound if it is that many frames late
-/// The mouth is the gap of the inner lips where landmarks of a known scheme tell; else what moves: the pictures'
-/// change from frame to frame in the lower half of the landmarks' box, or without landmarks in the middle of the
-/// lower half of the picture, against the change of the sound's envelope.
+/// The mouth is what moves from frame to frame in the lower half of the landmarks' box, or without landmarks in the
+/// middle of the lower half of the picture; with landmarks of a known scheme, the gap of the inner lips as well.
 /// Phones: how often each occurs, as given, else by the pronunciation of the transcript.
 /// Throws std::runtime_error naming the file where sound or pictures cannot be read.
 struct Inspect {

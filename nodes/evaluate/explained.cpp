@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace talkgraph {
@@ -55,7 +56,7 @@ PairedRows paired_rows(const Collected<Track>& truth, const Collected<Track>& by
   return out;
 }
 
-Eigen::RowVectorXd explained_share(const Eigen::MatrixXd& truth, const Eigen::MatrixXd& by, int folds) {
+Eigen::RowVectorXd explained_share(const Eigen::MatrixXd& truth, const Eigen::MatrixXd& by, int folds, double ridge) {
   const auto count = truth.rows();
   if (count < folds || count * (folds - 1) / folds <= by.cols())
     throw std::runtime_error(
@@ -63,12 +64,13 @@ Eigen::RowVectorXd explained_share(const Eigen::MatrixXd& truth, const Eigen::Ma
   Eigen::RowVectorXd error = Eigen::RowVectorXd::Zero(truth.cols());
   for (Eigen::Index fold = 0; fold < folds; ++fold) {
     const auto from = fold * count / folds, to = (fold + 1) * count / folds;
-    const Eigen::MatrixXd x = without(by, from, to), y = without(truth, from, to);
+    Eigen::MatrixXd x = without(by, from, to), y = without(truth, from, to);
     const Eigen::RowVectorXd x_mean = x.colwise().mean(), y_mean = y.colwise().mean();
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least_squares;
-    least_squares.setThreshold(1e-8);
-    least_squares.compute(x.rowwise() - x_mean);
-    const Eigen::MatrixXd weights = least_squares.solve((y.rowwise() - y_mean).eval());
+    x.rowwise() -= x_mean;
+    y.rowwise() -= y_mean;
+    Eigen::MatrixXd normal = x.transpose() * x;
+    normal.diagonal().array() += ridge * normal.diagonal().mean() + std::numeric_limits<double>::min();
+    const Eigen::MatrixXd weights = normal.ldlt().solve(x.transpose() * y);
     const Eigen::MatrixXd predicted =
         ((by.middleRows(from, to - from).rowwise() - x_mean) * weights).rowwise() + y_mean;
     error += (truth.middleRows(from, to - from) - predicted).colwise().squaredNorm();
@@ -82,7 +84,7 @@ Eigen::RowVectorXd explained_share(const Eigen::MatrixXd& truth, const Eigen::Ma
 
 Table Explained::operator()(const Collected<Track>& truth, const Collected<Track>& by) const {
   const auto rows = paired_rows(truth, by);
-  const auto share = explained_share(rows.truth, rows.by, folds);
+  const auto share = explained_share(rows.truth, rows.by, folds, ridge);
   Table table{"Share of the variance explained", "", {}, {"explained"}, {{}}};
   for (Eigen::Index d = 0; d < share.size(); ++d) {
     const auto at = static_cast<std::size_t>(d);
@@ -100,6 +102,9 @@ void describe(Description<Explained>& d) {
       .input("by", "what explains it, of the same clips")
       .output("table", "one row, a column a dimension: share of the variance, 0 to 1");
   d.param("folds", &Explained::folds).within(2, 100).doc("parts that the frames are cut into");
+  d.param("ridge", &Explained::ridge)
+      .within(0, 1e6)
+      .doc("penalty, as a share of the mean variance of `by`'s dimensions");
 }
 
 }  // namespace talkgraph

@@ -7,9 +7,8 @@
 namespace talkgraph {
 
 /// What another track says of each dimension of `truth` linearly: 1 − squared
-/// error / variance, 0 at least, of least squares on the other's values of the
-/// same frames; directions in which that varies by less than 1e-8 of its largest
-/// spread are rounding and count as nothing. The frames of all clips, one after the other, are cut into
+/// error / variance, 0 at least, of ridge regression on the other's values of
+/// the same frames. The frames of all clips, one after the other, are cut into
 /// `folds` parts, and each is predicted from the rest. Tracks are matched by
 /// key; frames that either has lost are left out. Throws std::runtime_error if
 /// no clip is in both, dimensions differ between clips, lengths differ by more
@@ -17,6 +16,8 @@ namespace talkgraph {
 /// folds or dimensions.
 struct Explained {
   int folds = 5;
+  double ridge =
+      1e-9;  ///< penalty, as a share of the mean variance of the other's dimensions; tells rounding from speech
 
   /// One row "explained", a column a dimension of `truth`, NaN where it does not vary.
   Table operator()(const Collected<Track>& truth, const Collected<Track>& by) const;
@@ -30,6 +31,6 @@ struct PairedRows {
 PairedRows paired_rows(const Collected<Track>& truth, const Collected<Track>& by);
 
 /// The same of rows, an entry a column of `truth`.
-Eigen::RowVectorXd explained_share(const Eigen::MatrixXd& truth, const Eigen::MatrixXd& by, int folds);
+Eigen::RowVectorXd explained_share(const Eigen::MatrixXd& truth, const Eigen::MatrixXd& by, int folds, double ridge);
 
 }  // namespace talkgraph

@@ -87,17 +87,21 @@ Artifact FaceModes::operator()(const AppearanceModel& model, const IndependentCo
     return draw_face(varied.model, c, zoom, 255);
   };
   const cv::Size size = face(0, 0).size();
-  cv::Mat sheet(bar_height + static_cast<int>(rows) * size.height, margin + 5 * size.width, CV_8UC3,
-                cv::Scalar::all(255));
-  for (int column = 0; column < 5; ++column) {
-    const double steps = deviations * (column - 2) / 2;
-    const int left = margin + column * size.width;
-    write(sheet, column == 2 ? "mean" : fmt::format("{:+g} sd", steps), {left + size.width / 2 - 20, bar_height - 6});
-    for (int row = 0; row < rows; ++row)
-      face(row, steps).copyTo(sheet(cv::Rect({left, bar_height + row * size.height}, size)));
+  const int columns = std::min(across, static_cast<int>(rows)),
+            lines = (static_cast<int>(rows) + columns - 1) / columns;
+  const int block = margin + 5 * size.width;
+  cv::Mat sheet(bar_height + lines * size.height, columns * block, CV_8UC3, cv::Scalar::all(255));
+  for (int mode = 0; mode < rows; ++mode) {
+    const cv::Point corner(mode / lines * block, bar_height + mode % lines * size.height);
+    write(sheet, std::to_string(mode + 1), corner + cv::Point(10, size.height / 2));
+    for (int i = 0; i < 5; ++i) {
+      const double steps = deviations * (i - 2) / 2;
+      const cv::Point at = corner + cv::Point(margin + i * size.width, 0);
+      face(mode, steps).copyTo(sheet(cv::Rect(at, size)));
+      if (mode % lines == 0)
+        write(sheet, i == 2 ? "mean" : fmt::format("{:+g} sd", steps), at + cv::Point(size.width / 2 - 20, -6));
+    }
   }
-  for (int row = 0; row < rows; ++row)
-    write(sheet, std::to_string(row + 1), {10, bar_height + row * size.height + size.height / 2});
   const Artifact artifact{name + ".png", varied.title};
   write_picture(context.file(artifact.path), sheet);
   return artifact;
@@ -114,6 +118,7 @@ void describe(Description<FaceModes>& d) {
       .output("picture", "a PNG file");
   d.param("of", &FaceModes::of).doc("modes of shape and texture together, of shape alone, or of texture alone");
   d.param("modes", &FaceModes::modes).at_least(1).doc("rows: the modes of the largest variance");
+  d.param("across", &FaceModes::across).at_least(1).doc("modes beside each other");
   d.param("deviations", &FaceModes::deviations).positive().doc("standard deviations shown each way");
   d.param("zoom", &FaceModes::zoom).within(0.1, 20).doc("pixels per pixel of the mean shape");
   d.param("name", &FaceModes::name).doc("of the file below the run folder, without .png");

@@ -23,6 +23,7 @@ inline constexpr EnumNames<ModeKind, 3> enum_names<ModeKind>{
 struct FaceModes {
   ModeKind of = ModeKind::combined;
   int modes = 6;
+  int across = 1;  ///< modes beside each other
   double deviations = 2;
   double zoom = 1.5;
   std::string name = "modes";

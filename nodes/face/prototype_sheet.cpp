@@ -31,7 +31,7 @@ cv::Mat scaled(const cv::Mat& picture, int width) {
 
 void draw_points(cv::Mat& picture, const Shape& shape, double scale) {
   for (Eigen::Index i = 0; i < shape.rows(); ++i)
-    cv::circle(picture, fine(point(shape, i, scale)), std::max(16, picture.cols / 8), mark_colour, cv::FILLED,
+    cv::circle(picture, fine(point(shape, i, scale)), std::max(10, picture.cols / 8), mark_colour, cv::FILLED,
                cv::LINE_AA, shift);
 }
 

@@ -19,7 +19,7 @@ inline constexpr EnumNames<Contrast, 2> enum_names<Contrast>{
 /// Independent components of the rows of all tracks, lost frames left out
 /// (thesis Appendix A). Rows are whitened first; directions in which they do
 /// not vary, or that are beyond `components`, are left out: there the
-/// components say nothing and normalise.remove_style changes nothing. Warns of
+/// components say nothing. Warns of
 /// components that have not settled. Throws std::runtime_error on no tracks,
 /// dimensions that differ, values that are not finite, fewer rows than
 /// dimensions, and rows that do not vary.

@@ -29,12 +29,15 @@ Audio sound() {
   return audio;
 }
 
-/// A dark mouth that opens with the sound, `late` frames behind it.
+/// How open the mouth is: it moves most while it is loud.
+double opening(int t) { return loudness(t) * (t % 2 == 0 ? 1 : 0.4); }
+
+/// A dark mouth that moves with the sound, `late` frames behind it.
 Video pictures(int late) {
   std::vector<cv::Mat> all;
   for (int t = 0; t < frames; ++t) {
     cv::Mat frame(80, 60, CV_8UC3, cv::Scalar::all(180));
-    const int open = static_cast<int>(14 * loudness(t - late));
+    const int open = static_cast<int>(14 * opening(t - late));
     frame(cv::Rect(20, 50, 20, open + 1)).setTo(cv::Scalar::all(40));
     all.push_back(frame);
   }
@@ -49,7 +52,7 @@ LandmarkTrack lips(int late) {
     shape.row(0) << 5, 20;
     shape.row(1) << 55, 78;
     shape.row(62) << 30, 50;
-    shape.row(66) << 30, 50 + 14 * loudness(t - late);
+    shape.row(66) << 30, 50 + 14 * opening(t - late);
     track.frames.push_back(shape);
   }
   return track;
@@ -94,11 +97,11 @@ TEST(Inspect, TellsRatesAndLengths) {
 TEST(Inspect, FindsTheShiftOfThePicture) {
   for (const int late : {-5, 0, 3, 7}) {
     auto r = recording(late);
-    EXPECT_EQ(best_lag(inspect(r).findings), late) << "by what moves in the picture";
+    EXPECT_NEAR(best_lag(inspect(r).findings), late, 1) << "by what moves in the picture";
     r.landmarks = lips(late);
-    EXPECT_EQ(best_lag(inspect(r).findings), late) << "by the lips";
+    EXPECT_NEAR(best_lag(inspect(r).findings), late, 1) << "by the lips";
     r.landmarks->scheme = "";
-    EXPECT_EQ(best_lag(inspect(r).findings), late) << "by what moves in the lower half of the landmarks";
+    EXPECT_NEAR(best_lag(inspect(r).findings), late, 1) << "by what moves in the lower half of the landmarks";
   }
 }
 

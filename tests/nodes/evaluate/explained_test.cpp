@@ -34,15 +34,21 @@ TEST(Explained, GivesTheShareThatIsLinear) {
 }
 
 TEST(Explained, LearnsNothingFromTheFramesItPredicts) {
-  const auto share = explained_share(noise(60, 1, 3), noise(60, 30, 4), 5);
+  const auto share = explained_share(noise(60, 1, 3), noise(60, 30, 4), 5, 1e-9);
   EXPECT_EQ(share(0), 0) << "30 random dimensions fit 60 frames well, and say nothing of others";
+}
+
+TEST(Explained, APenaltyHoldsManyDimensions) {
+  const Eigen::MatrixXd by = noise(200, 60, 8), truth = by.col(3) + 2 * noise(200, 1, 9);
+  EXPECT_GT(explained_share(truth, by, 5, 1)(0), explained_share(truth, by, 5, 1e-9)(0));
+  EXPECT_EQ(explained_share(truth, Eigen::MatrixXd::Zero(200, 3), 5, 1e-9)(0), 0);
 }
 
 TEST(Explained, TakesRoundingForNothing) {
   const Eigen::MatrixXd truth = noise(300, 1, 6);
   Eigen::MatrixXd by(300, 2);
   by << noise(300, 1, 7), 1e-12 * truth;
-  EXPECT_NEAR(explained_share(truth, by, 5)(0), 0, 0.02);
+  EXPECT_NEAR(explained_share(truth, by, 5, 1e-9)(0), 0, 0.02);
 }
 
 TEST(Explained, MatchesClipsByKeyAndPassesOverLostFrames) {
