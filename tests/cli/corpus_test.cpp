@@ -59,14 +59,15 @@ TEST(CorpusReport, TellsWhatIsWrongWithAClip) {
   marks.findings.values["landmark_frames"] = 70;
   marks.findings.values["landmark_gaps"] = 3;
   marks.findings.values["transcript"] = 0;
-  const Json report = corpus_report({clip("a", 0), clip("b", 0), damaged, silent, fast, marks, late});
+  const Json report = corpus_report({clip("a", 0), clip("b", 0), clip("c", 0), clip("d", 0), clip("e", 0), clip("f", 0),
+                                     damaged, silent, fast, marks, late});
   const std::string text = report_text(report);
   for (const char* part :
        {"damaged: 2 of 75 frames are damaged (10 to 12)", "silent: the sound is silent",
         "silent: the sound lasts 2.00 s, the picture 3.00 s", "fast: 50 frames a second, most clips have 25",
         "marks: landmarks of 70 frames, the picture has 75", "marks: 3 of 70 frames lack landmarks",
-        "late: the picture seems to be 6 frames late against the other clips", "6 of 7 clips, not marks",
-        "frames a second: 25 (6), 50 (1)"})
+        "late: the picture seems to be 6 frames late against the other clips", "10 of 11 clips, not marks",
+        "frames a second: 25 (10), 50 (1)"})
     EXPECT_THAT(text, HasSubstr(part));
 }
 
