@@ -1,5 +1,5 @@
 # cmake --install: the program, the libraries with their headers below include/talkgraph, the CMake package, and the
-# pipelines with their schemas as shared data.
+# pipelines with their schemas as shared data, with the point schemes.
 include(CMakePackageConfigHelpers)
 
 set(PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/talkgraph)
@@ -18,7 +18,7 @@ install(TARGETS talkgraph ${LIBRARIES} EXPORT talkgraph)
 install(EXPORT talkgraph NAMESPACE talkgraph:: FILE talkgraphTargets.cmake DESTINATION ${PACKAGE_DIR})
 
 install(DIRECTORY graph runtime nodes DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/talkgraph FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY pipelines DESTINATION ${CMAKE_INSTALL_DATADIR}/talkgraph)
+install(DIRECTORY pipelines schemes DESTINATION ${CMAKE_INSTALL_DATADIR}/talkgraph)
 
 configure_package_config_file(cmake/talkgraphConfig.cmake.in ${PROJECT_BINARY_DIR}/talkgraphConfig.cmake
                               INSTALL_DESTINATION ${PACKAGE_DIR})

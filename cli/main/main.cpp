@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "cli/annotate.h"
 #include "cli/cache.h"
 #include "cli/corpus.h"
 #include "cli/example.h"
@@ -219,6 +220,19 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   corpus_new_app->add_option("--rate", corpus.rate, "frames per second of folders of pictures");
 
+  AnnotateCommand annotation;
+  auto* annotate_app = app.add_subcommand("annotate", "mark the face in a few frames, on a page in your browser");
+  annotate_app->add_option("manifest", graph, "manifest of the recordings")->required();
+  annotate_app->add_option("--frames", annotation.project.frames, "how many frames to annotate")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  annotate_app->add_option("--port", annotation.port, "of the page; 0: any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  annotate_app->add_option("--scheme", annotation.project.scheme,
+                           "point scheme, by its name or .json file (default: the manifest's, else ibug68)");
+  annotate_app->add_option("--seed", annotation.project.seed, "of the choice of frames")->capture_default_str();
+
   auto* check_app = app.add_subcommand("check", "check graphs without running them");
   check_app->add_option("graphs", files, "graph files")->required();
   check_app->add_option("--set", sets, "path=value")->take_all()->allow_extra_args(false);
@@ -275,6 +289,7 @@ int main(int argc, char** argv) {
       if (*speak_app) return speak(speech, registry);
       if (*corpus_check_app) return check_corpus(corpus, run, registry);
       if (*corpus_new_app) return new_corpus(corpus);
+      if (*annotate_app) return run_annotate(graph, annotation);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
       if (*diff_app) return diff(graph, other.empty() ? graph : other, registry, sets);

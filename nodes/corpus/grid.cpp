@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "nodes/corpus/labels.h"
-#include "nodes/corpus/tables.h"
+#include "nodes/corpus/landmarks.h"
 #include "nodes/corpus/text.h"
 #include "nodes/media/audio_file.h"
 #include "nodes/media/video_file.h"
@@ -80,7 +80,7 @@ Recording read_clip(const fs::path& folder, const Clip& clip, bool with_landmark
   recording.key = [path = files.video] { return file_key(path); };
   recording.words = read_words(files.align.string());
   recording.transcript = transcript_of(*recording.words);
-  if (with_landmarks) recording.landmarks = read_landmarks(files.landmarks.string(), Rational(25), "ibug68");
+  if (with_landmarks) recording.landmarks = read_landmarks({files.landmarks.string(), "ibug68"}, Rational(25));
   return recording;
 }
 

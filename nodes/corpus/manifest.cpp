@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "nodes/corpus/labels.h"
-#include "nodes/corpus/manifest_file.h"
 #include "nodes/corpus/tables.h"
 #include "nodes/corpus/text.h"
 #include "nodes/media/audio_file.h"
@@ -18,10 +17,6 @@ namespace {
 Track read_visual(const ManifestClip& clip) {
   NumberTable table = read_table(clip.visual, clip.visual_dataset);
   return {std::move(table.values), *clip.visual_rate, 0.5 / clip.visual_rate->value(), std::move(table.names)};
-}
-
-Video open(const std::string& path, const std::optional<Rational>& rate) {
-  return std::filesystem::is_directory(path) ? open_frame_folder(path, *rate) : open_video(path);
 }
 
 /// The transcript as given, else from the word times.
@@ -57,14 +52,14 @@ Recording with_media(const ManifestClip& clip, Recording recording) try {
   recording.id = clip.id;
   recording.split = clip.split;
   recording.audio = [path = clip.audio.empty() ? clip.video : clip.audio] { return read_audio(path); };
-  if (!clip.video.empty()) recording.video = [path = clip.video, rate = clip.rate] { return open(path, rate); };
+  if (!clip.video.empty()) recording.video = [clip] { return open_pictures(clip); };
   recording.key = [clip] {
     return KeyMaker().add(file_key(clip.audio)).add(file_key(clip.video)).add(clip.rate ? clip.rate->str() : "").key();
   };
   if (!clip.visual.empty()) recording.visual = read_visual(clip);
-  if (!clip.landmarks.empty()) {
+  if (!clip.landmarks.path.empty()) {
     const Rational rate = clip.rate ? *clip.rate : recording.video().source->rate();
-    recording.landmarks = read_landmarks(clip.landmarks, rate, clip.landmark_scheme);
+    recording.landmarks = read_landmarks(clip.landmarks, rate, recording.video);
   }
   return recording;
 } catch (const std::runtime_error& e) {
@@ -72,6 +67,10 @@ Recording with_media(const ManifestClip& clip, Recording recording) try {
 }
 
 }  // namespace
+
+Video open_pictures(const ManifestClip& clip) {
+  return std::filesystem::is_directory(clip.video) ? open_frame_folder(clip.video, *clip.rate) : open_video(clip.video);
+}
 
 Stream<Recording> Manifest::operator()() const {
   Diagnostics diagnostics;

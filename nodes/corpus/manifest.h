@@ -1,9 +1,13 @@
 #pragma once
 
 #include "graph/description.h"
+#include "nodes/corpus/manifest_file.h"
 #include "nodes/types/recording.h"
 
 namespace talkgraph {
+
+/// The pictures of a clip that has some. Throws std::runtime_error that names the file.
+Video open_pictures(const ManifestClip& clip);
 
 /// Any recordings, as a JSON file describes them: docs/manifest.md. Files it names are
 /// taken from its own folder. Throws std::runtime_error: all that is wrong with the

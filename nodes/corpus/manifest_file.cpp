@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "nodes/corpus/text.h"
+#include "nodes/types/scheme.h"
 
 namespace talkgraph {
 namespace {
@@ -65,6 +66,12 @@ class Members {
     value = full.string();
   }
 
+  void flag(const char* key, bool& value) const {
+    if (!has(key)) return;
+    if (!at(key).is(Kind::boolean)) return wrong_kind(key, "true or false");
+    value = at(key).scalar.get<bool>();
+  }
+
   void wrong_kind(const char* key, const char* expected) const {
     diagnostics_.error(at(key).place,
                        fmt::format("\"{}\": {} is expected, got {}", key, expected, at(key).kind_name()));
@@ -93,14 +100,39 @@ void read_visual(const Members& clip, ManifestClip& out) {
   if (!out.visual_rate) visual.error("\"visual\" needs a \"rate\", frames per second");
 }
 
-void read_landmarks(const Members& clip, ManifestClip& out) {
+/// A scheme file in one line, as landmarks carry it.
+std::string scheme_text(const std::string& path, Diagnostics& diagnostics) {
+  const auto source = std::make_shared<SourceText>(SourceText{path, read_text_file(path)});
+  return parse_scheme(source, diagnostics) ? parse_json(source, diagnostics)->plain().dump() : "";
+}
+
+/// The name of a built-in scheme, or the text of the scheme file named.
+void read_scheme(const Members& landmarks, const fs::path& folder, std::string& scheme, Diagnostics& diagnostics) {
+  landmarks.text("scheme", scheme);
+  if (scheme.empty()) return;
+  if (scheme.ends_with(".json")) {
+    std::string path;
+    landmarks.path("scheme", path, {}, false);
+    scheme = fs::is_regular_file(folder / scheme) ? scheme_text(path, diagnostics) : "";
+  } else if (const auto known = built_in_schemes(); std::find(known.begin(), known.end(), scheme) == known.end()) {
+    diagnostics.error(
+        landmarks.at("scheme").place,
+        fmt::format("there is no point scheme \"{}\"{}; built in are {}, others are named by their .json file", scheme,
+                    did_you_mean(scheme, known), fmt::join(known, ", ")));
+  }
+}
+
+void read_landmarks(const Members& clip, const fs::path& folder, LandmarkFiles& out, Diagnostics& diagnostics) {
   if (!clip.has("landmarks")) return;
-  if (clip.at("landmarks").is(Kind::text)) return clip.path("landmarks", out.landmarks, {".csv"}, true);
+  const std::vector<std::string> endings{".csv", ".h5", ".hdf5"};
+  if (clip.at("landmarks").is(Kind::text)) return clip.path("landmarks", out.path, endings, true);
   if (!clip.at("landmarks").is(Kind::object))
     return clip.wrong_kind("landmarks", "a file, or an object with \"file\" and \"scheme\"");
-  const Members landmarks = clip.within("landmarks", {"file", "scheme"});
-  landmarks.path("file", out.landmarks, {".csv"}, true);
-  landmarks.text("scheme", out.landmark_scheme);
+  const Members landmarks = clip.within("landmarks", {"file", "scheme", "dataset", "sparse"});
+  landmarks.path("file", out.path, endings, true);
+  landmarks.text("dataset", out.dataset);
+  landmarks.flag("sparse", out.sparse);
+  read_scheme(landmarks, folder, out.scheme, diagnostics);
 }
 
 /// A transcript that ends in .txt names a file, any other is the text itself.
@@ -133,36 +165,67 @@ ManifestClip read_clip(const LocatedJson& json, const fs::path& folder, const st
   clip.path("phones", out.phones, {".lab", ".textgrid", ".align"}, false);
   clip.path("words", out.words, {".lab", ".textgrid", ".align"}, false);
   read_visual(clip, out);
-  read_landmarks(clip, out);
+  read_landmarks(clip, folder, out.landmarks, diagnostics);
   read_transcript(clip, out);
   check_id(clip, out.id);
   const bool folder_of_pictures = fs::is_directory(out.video);
   if (out.audio.empty() && (out.video.empty() || folder_of_pictures))
     clip.error("a clip needs sound: \"audio\", or a \"video\" file with a sound track");
   if (folder_of_pictures && !out.rate) clip.error("a folder of pictures needs a \"rate\", frames per second");
-  if (!out.landmarks.empty() && out.video.empty() && !out.rate)
+  if (!out.landmarks.path.empty() && out.video.empty() && !out.rate)
     clip.error("landmarks without a \"video\" need a \"rate\", frames per second");
+  if (out.landmarks.sparse && out.video.empty()) clip.error("\"sparse\" landmarks need a \"video\"");
   return out;
+}
+
+LandmarkFolder read_landmark_folder(const Members& manifest, const fs::path& folder, Diagnostics& diagnostics) {
+  LandmarkFolder out;
+  if (!manifest.has("landmarks")) return out;
+  if (!manifest.at("landmarks").is(Kind::object))
+    return manifest.wrong_kind("landmarks", "an object with \"folder\" and \"scheme\""), out;
+  const Members landmarks = manifest.within("landmarks", {"folder", "scheme"});
+  landmarks.text("folder", out.path);
+  if (out.path.empty()) return landmarks.error("\"landmarks\" needs a \"folder\""), out;
+  out.path = (folder / out.path).lexically_normal().string();
+  read_scheme(landmarks, folder, out.scheme, diagnostics);
+  return out;
+}
+
+bool holds_points(const fs::path& folder) {
+  if (!fs::is_directory(folder)) return false;
+  const fs::directory_iterator entries(folder);
+  return std::any_of(begin(entries), end(entries),
+                     [](const auto& entry) { return entry.path().extension() == ".pts"; });
+}
+
+/// Landmarks of some frames in a folder of the clip's name, unless the clip has its own.
+void take_annotated(const LandmarkFolder& from, ManifestClip& clip) {
+  const fs::path folder = fs::path(from.path) / clip.id;
+  if (from.path.empty() || clip.id.empty() || clip.video.empty() || !clip.landmarks.path.empty()) return;
+  if (holds_points(folder)) clip.landmarks = {.path = folder.string(), .scheme = from.scheme, .sparse = true};
+}
+
+std::optional<LocatedJson> read_object(const std::string& file, Diagnostics& diagnostics) {
+  const auto source = std::make_shared<SourceText>(SourceText{file, read_text_file(file)});
+  auto json = parse_json(source, diagnostics);
+  if (!json || json->is(Kind::object)) return json;
+  diagnostics.error(json->place, "a manifest is an object with a list \"clips\"");
+  return {};
 }
 
 }  // namespace
 
 std::vector<ManifestClip> read_manifest(const std::string& file, Diagnostics& diagnostics) {
-  const auto source = std::make_shared<SourceText>(SourceText{file, read_text_file(file)});
-  const auto parsed = parse_json(source, diagnostics);
   std::vector<ManifestClip> clips;
-  if (!parsed) return clips;
-  const LocatedJson& json = *parsed;
+  const auto json = read_object(file, diagnostics);
+  if (!json) return clips;
   const fs::path folder = fs::absolute(file).parent_path();
-  if (!json.is(Kind::object)) {
-    diagnostics.error(json.place, "a manifest is an object with a list \"clips\"");
-    return clips;
-  }
-  const Members manifest(json, folder, diagnostics, {"$schema", "description", "rate", "clips"});
+  const Members manifest(*json, folder, diagnostics, {"$schema", "description", "rate", "landmarks", "clips"});
   std::optional<Rational> rate;
   manifest.rate("rate", rate);
   if (!manifest.has("clips")) return manifest.error("a manifest needs a list \"clips\""), clips;
   if (!manifest.at("clips").is(Kind::array)) return manifest.wrong_kind("clips", "a list of clips"), clips;
+  const auto annotated = read_landmark_folder(manifest, folder, diagnostics);
   std::map<std::string, int> lines;
   for (const auto& item : manifest.at("clips").items) {
     if (!item.is(Kind::object)) {
@@ -175,8 +238,21 @@ std::vector<ManifestClip> read_manifest(const std::string& file, Diagnostics& di
     if (!fresh && !id.empty())
       diagnostics.error(item.find("id")->value.place,
                         fmt::format("the clip in line {} has the id \"{}\" already", other->second, id));
+    take_annotated(annotated, clips.back());
   }
   return clips;
+}
+
+LandmarkFolder read_landmark_folder(const std::string& file, Diagnostics& diagnostics) {
+  const auto json = read_object(file, diagnostics);
+  if (!json) return {};
+  const fs::path folder = fs::absolute(file).parent_path();
+  Diagnostics told_already;
+  const Members manifest(*json, folder, told_already, {});
+  auto found = read_landmark_folder(manifest, folder, diagnostics);
+  const auto* member = json->find(manifest.has("landmarks") ? "landmarks" : "clips");
+  if (member) found.place = member->key_place;
+  return found;
 }
 
 }  // namespace talkgraph

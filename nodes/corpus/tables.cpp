@@ -13,7 +13,6 @@
 
 #include "graph/archive.h"
 #include "nodes/corpus/text.h"
-#include "nodes/media/video_file.h"
 
 namespace talkgraph {
 namespace {
@@ -51,59 +50,6 @@ Eigen::MatrixXd matrix_of(const char* data, Eigen::Index rows, Eigen::Index colu
   return values.template cast<double>();
 }
 
-Shape read_pts(const std::string& path) {
-  std::vector<double> numbers;
-  bool inside = false;
-  for (const auto& line : lines_of(read_text_file(path))) {
-    const auto words = words_of(line.text);
-    if (words[0] == "{") {
-      inside = true;
-    } else if (words[0] == "}") {
-      inside = false;
-    } else if (inside) {
-      if (words.size() != 2) complain(path, line.number, "\"x y\" is expected");
-      for (const auto& word : words) numbers.push_back(number_in(word, path, line.number) - 1);
-    }
-  }
-  if (numbers.empty()) throw std::runtime_error(path + ": holds no points");
-  return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>(numbers.data(),
-                                                                                     std::ssize(numbers) / 2, 2);
-}
-
-std::vector<Shape> read_pts_folder(const std::string& folder) {
-  std::vector<std::string> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (lower_case(entry.path().extension().string()) == ".pts") files.push_back(entry.path().string());
-  if (files.empty()) throw std::runtime_error(folder + ": there is no .pts file in this folder");
-  std::sort(files.begin(), files.end(), natural_less);
-  std::vector<Shape> shapes;
-  for (const auto& file : files) {
-    shapes.push_back(read_pts(file));
-    if (shapes.back().rows() != shapes.front().rows())
-      throw std::runtime_error(fmt::format("{}: holds {} points, the first file of the folder {}", file,
-                                           shapes.back().rows(), shapes.front().rows()));
-  }
-  return shapes;
-}
-
-std::vector<Shape> read_csv_landmarks(const std::string& path) {
-  const NumberTable table = read_csv(path);
-  const bool counted = !table.names.empty() && table.names[0] == "frame";
-  const Eigen::Index columns = table.values.cols() - counted;
-  if (columns < 2 || columns % 2)
-    throw std::runtime_error(path + ": landmarks need the columns x0,y0,x1,y1,... and maybe \"frame\" before them");
-  std::vector<Shape> shapes;
-  for (Eigen::Index t = 0; t < table.values.rows(); ++t) {
-    if (counted && table.values(t, 0) != static_cast<double>(t))
-      throw std::runtime_error(
-          fmt::format("{}: frame {} is expected in row {}, not {}", path, t, t + 1, table.values(t, 0)));
-    const Eigen::VectorXd row = table.values.row(t).tail(columns);
-    shapes.push_back(
-        Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>(row.data(), columns / 2, 2));
-  }
-  return shapes;
-}
-
 }  // namespace
 
 NumberTable read_csv(const std::string& path) {
@@ -116,6 +62,7 @@ NumberTable read_csv(const std::string& path) {
   table.values.resize(std::ssize(lines) - static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(columns));
   for (std::size_t i = first; i < lines.size(); ++i) {
     const auto cells = split(lines[i].text, ',');
+    table.lines.push_back(lines[i].number);
     if (cells.size() != columns)
       complain(path, lines[i].number, fmt::format("{} columns are expected, got {}", columns, cells.size()));
     for (std::size_t c = 0; c < columns; ++c)
@@ -167,14 +114,6 @@ NumberTable read_table(const std::string& path, const std::string& dataset) {
     if (!table.values.row(t).allFinite())
       throw std::runtime_error(fmt::format("{}: frame {} holds a number that is not finite", path, t));
   return table;
-}
-
-LandmarkTrack read_landmarks(const std::string& path, Rational rate, const std::string& scheme) {
-  LandmarkTrack track;
-  track.frames = fs::is_directory(path) ? read_pts_folder(path) : read_csv_landmarks(path);
-  track.rate = rate;
-  track.scheme = scheme.empty() && track.frames[0].rows() == 68 ? "ibug68" : scheme;
-  return track;
 }
 
 }  // namespace talkgraph

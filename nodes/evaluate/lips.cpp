@@ -4,16 +4,20 @@
 
 #include <stdexcept>
 
+#include "nodes/types/scheme.h"
+
 namespace talkgraph {
 
-Eigen::VectorXd point_distance(const LandmarkTrack& landmarks, int a, int b) {
+Eigen::VectorXd point_distance(const LandmarkTrack& landmarks, const std::string& a, const std::string& b) {
+  if (landmarks.frames.empty()) return {};
+  const auto scheme = scheme_of(landmarks);
+  const int from = scheme.point(a), to = scheme.point(b);
   Eigen::VectorXd out(static_cast<Eigen::Index>(landmarks.frames.size()));
   for (Eigen::Index t = 0; t < out.size(); ++t) {
     const Shape& shape = landmarks.frames[static_cast<std::size_t>(t)];
-    if (shape.rows() <= std::max(a, b))
-      throw std::runtime_error(fmt::format("landmarks of {} points have no points {} and {}: name those of your scheme",
-                                           shape.rows(), a, b));
-    out[t] = (shape.row(a) - shape.row(b)).norm();
+    if (shape.rows() != scheme.points() || !shape.allFinite())
+      throw std::runtime_error(fmt::format("frame {} has no landmarks, or not all", t));
+    out[t] = (shape.row(from) - shape.row(to)).norm();
   }
   return out;
 }

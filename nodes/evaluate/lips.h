@@ -1,11 +1,13 @@
 #pragma once
 
+#include <string>
+
 #include "nodes/types/shape.h"
 
 namespace talkgraph {
 
-/// Distance between two points in every frame, T values. Throws
-/// std::runtime_error on a frame whose shape lacks one of them.
-Eigen::VectorXd point_distance(const LandmarkTrack& landmarks, int a, int b);
+/// Distance between two points in every frame, T values; the points have these names in the scheme. Throws
+/// std::runtime_error if the scheme is unknown or has no such point, or a frame has no landmarks.
+Eigen::VectorXd point_distance(const LandmarkTrack& landmarks, const std::string& a, const std::string& b);
 
 }  // namespace talkgraph

@@ -30,8 +30,8 @@ void describe(Description<MouthLag>& d) {
       .output("scores",
               "lag (frames; above 0: the mouth is late), correlation at that lag, in_time (correlation without a lag)");
   d.param("max_lag", &MouthLag::max_lag).within(0, 100).unit("frames").doc("longest shift tried");
-  d.param("upper", &MouthLag::upper).at_least(0).doc("point in the middle of the inner upper lip");
-  d.param("lower", &MouthLag::lower).at_least(0).doc("point in the middle of the inner lower lip");
+  d.param("upper", &MouthLag::upper).doc("point in the middle of the inner upper lip, by its name in the point scheme");
+  d.param("lower", &MouthLag::lower).doc("point in the middle of the inner lower lip");
 }
 
 }  // namespace talkgraph

@@ -15,8 +15,8 @@ namespace talkgraph {
 /// Nothing is given where either does not vary.
 struct MouthLag {
   int max_lag = 6;
-  int upper = 62;  ///< point in the middle of the inner upper lip (iBUG: 62)
-  int lower = 66;  ///< point in the middle of the inner lower lip (iBUG: 66)
+  std::string upper = "inner_top";     ///< point in the middle of the inner upper lip, by its name in the scheme
+  std::string lower = "inner_bottom";  ///< of the inner lower lip
 
   std::optional<Scores> operator()(const LandmarkTrack& landmarks, const Audio& audio) const;
 };

@@ -61,10 +61,11 @@ void describe(Description<MouthOpening>& d) {
       .output("scores", "closed, open, pause: gap between the lips as a share of the mouth's width");
   d.param("closed", &MouthOpening::closed).doc("phones on which the lips meet");
   d.param("open", &MouthOpening::open).doc("phones on which the mouth opens");
-  d.param("upper", &MouthOpening::upper).at_least(0).doc("point in the middle of the inner upper lip");
-  d.param("lower", &MouthOpening::lower).at_least(0).doc("point in the middle of the inner lower lip");
-  d.param("left", &MouthOpening::left).at_least(0).doc("corner of the mouth");
-  d.param("right", &MouthOpening::right).at_least(0).doc("the other corner");
+  d.param("upper", &MouthOpening::upper)
+      .doc("point in the middle of the inner upper lip, by its name in the point scheme");
+  d.param("lower", &MouthOpening::lower).doc("point in the middle of the inner lower lip");
+  d.param("left", &MouthOpening::left).doc("corner of the mouth");
+  d.param("right", &MouthOpening::right).doc("the other corner");
 }
 
 }  // namespace talkgraph

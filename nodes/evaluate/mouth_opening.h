@@ -14,14 +14,15 @@ namespace talkgraph {
 ///   pause   average gap of the frames labelled "sil"
 /// A score is left out where its phones do not occur; nothing is given for a
 /// clip with none of them. Throws std::runtime_error if lengths differ by more
-/// than two frames, the point scheme lacks a point, or the mouth has no width.
+/// than two frames, the scheme of the points is unknown or lacks a point, a frame has no landmarks, or the mouth has no
+/// width.
 struct MouthOpening {
   std::vector<std::string> closed = {"p", "b", "m"};
   std::vector<std::string> open = {"aa", "ae", "ah", "ao", "aw", "ay"};
-  int upper = 62;  ///< point in the middle of the inner upper lip (iBUG: 62)
-  int lower = 66;  ///< point in the middle of the inner lower lip (iBUG: 66)
-  int left = 48;   ///< corner of the mouth (iBUG: 48)
-  int right = 54;  ///< the other corner (iBUG: 54)
+  std::string upper = "inner_top";     ///< point in the middle of the inner upper lip, by its name in the scheme
+  std::string lower = "inner_bottom";  ///< of the inner lower lip
+  std::string left = "mouth_left";     ///< corner of the mouth
+  std::string right = "mouth_right";   ///< the other corner
 
   std::optional<Scores> operator()(const LandmarkTrack& landmarks, const FrameLabels& labels) const;
 };

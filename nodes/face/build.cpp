@@ -10,6 +10,7 @@
 #include "nodes/face/geometry.h"
 #include "nodes/face/pca.h"
 #include "nodes/face/sampling.h"
+#include "nodes/types/scheme.h"
 
 namespace talkgraph {
 namespace {
@@ -42,6 +43,12 @@ std::vector<Pyramid> pyramids(const Prototypes& prototypes) {
   std::vector<Pyramid> out;
   for (const auto& image : prototypes.images) out.emplace_back(image.pixels);
   return out;
+}
+
+/// Those of the point scheme, else Delaunay's.
+Triangles triangles_of(const std::string& scheme, const Shape& mean) {
+  const auto found = find_scheme(scheme);
+  return found && found->triangles.rows() > 0 ? scheme_of(scheme, mean.rows()).triangles : delaunay(mean);
 }
 
 struct Textures {
@@ -151,7 +158,7 @@ AppearanceModel BuildAppearance::operator()(const Prototypes& prototypes, Contex
   const auto count = static_cast<Eigen::Index>(prototypes.shapes.size());
   const auto aligned = procrustes(prototypes.shapes, std::min(width, mean_width(prototypes.shapes)));
   model.mean_shape = aligned.mean;
-  model.triangles = delaunay(model.mean_shape);
+  model.triangles = triangles_of(model.scheme, model.mean_shape);
   auto pictures = pyramids(prototypes);
 
   Eigen::MatrixXd shape_columns(2 * model.points(), count);

@@ -8,18 +8,24 @@
 #include <stdexcept>
 #include <utility>
 
+#include "nodes/types/scheme.h"
+
 namespace talkgraph {
 namespace {
+
+void extend(Eigen::AlignedBox2d& box, const Eigen::RowVector2d& point) {
+  if (point.allFinite()) box.extend(point.transpose());
+}
 
 Eigen::AlignedBox2d box_of(const LandmarkTrack& landmarks, const std::vector<int>& points) {
   Eigen::AlignedBox2d box;
   for (const Shape& shape : landmarks.frames) {
     if (points.empty())
-      for (const auto& point : shape.rowwise()) box.extend(point.transpose());
+      for (const auto& point : shape.rowwise()) extend(box, point);
     for (const int point : points) {
       if (point >= shape.rows())
         throw std::runtime_error(fmt::format("landmarks of {} points have no point {}", shape.rows(), point));
-      box.extend(shape.row(point).transpose());
+      extend(box, shape.row(point));
     }
   }
   if (box.isEmpty()) throw std::runtime_error("there are no landmarks to crop a video to");
@@ -80,7 +86,10 @@ class CropSource final : public VideoSource {
 }  // namespace
 
 Video Crop::operator()(const Video& video, const LandmarkTrack& landmarks) const try {
-  auto box = box_of(landmarks, points);
+  auto taken = points;
+  for (const auto& name : names)
+    for (const int point : scheme_of(landmarks).named(name)) taken.push_back(point);
+  auto box = box_of(landmarks, taken);
   const Eigen::Vector2d wider = Eigen::Vector2d::Constant(margin * box.sizes().maxCoeff());
   box = {box.min() - wider, box.max() + wider};
   const cv::Size size = video.source->size();
@@ -96,7 +105,8 @@ void describe(Description<Crop>& d) {
   d.input("video", "what is cut")
       .input("landmarks", "points of every frame, in its pictures")
       .output("video", "the cut, which follows nothing: one place in all frames");
-  d.param("points", &Crop::points).at_least(0).doc("numbers of the points; empty: all");
+  d.param("points", &Crop::points).at_least(0).doc("numbers of points; without points and names: all");
+  d.param("names", &Crop::names).doc("names of groups (\"outer_lips\") or points (\"mouth_left\") of the scheme");
   d.param("margin", &Crop::margin).within(0, 10).doc("added on each side, share of the longer side of their box");
 }
 

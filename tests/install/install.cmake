@@ -12,7 +12,7 @@ endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX} --strip)
 foreach(FILE bin/talkgraph include/talkgraph/graph/plugin.h share/talkgraph/pipelines/demo.json
-             share/talkgraph/pipelines/talkgraph.schema.json)
+             share/talkgraph/pipelines/talkgraph.schema.json share/talkgraph/schemes/ibug68.json)
   if(NOT EXISTS ${PREFIX}/${FILE})
     message(FATAL_ERROR "${FILE} is not installed")
   endif()

@@ -7,14 +7,15 @@
 #include "nodes/corpus/grid.h"
 #include "nodes/corpus/manifest.h"
 #include "nodes/corpus/parts.h"
-#include "nodes/corpus/register.h"
 #include "nodes/corpus/pick.h"
+#include "nodes/corpus/register.h"
 #include "nodes/corpus/select.h"
 #include "nodes/corpus/splits.h"
 #include "nodes/media/audio_file.h"
 #include "nodes/media/check_video.h"
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/register.h"
+#include "nodes/types/scheme.h"
 #include "tests/nodes/media/media_test.h"
 
 namespace talkgraph {
@@ -137,10 +138,11 @@ TEST_F(ManifestTest, EverythingThatAClipMayHave) {
   write("a.lab", "0 1000000 AA1\n");
   write("a.align", "0 2500 sil\n2500 5000 Ah\n");
   write("a.txt", "Ah, yes.");
-  write("p.csv", "x0,y0\n1,2\n3,4\n5,6\n");
+  write("p.csv", "x0,y0,x1,y1,x2,y2\n1,2,3,4,5,6\n3,4,5,6,7,8\n5,6,7,8,9,9\n");
+  write("tiny.json", "{\"name\": \"tiny\",\n\"mean\": [[0, 0], [2, 0], [1, 3]]}\n");
   const auto clips = all(node(R"({"rate": "30000/1001", "clips": [
     {"id": "one", "video": "frames", "audio": "a.wav", "phones": "a.lab", "words": "a.align", "transcript": "a.txt",
-     "landmarks": {"file": "p.csv", "scheme": "mouth"}, "split": "test", "rate": 15},
+     "landmarks": {"file": "p.csv", "scheme": "tiny.json"}, "split": "test", "rate": 15},
     {"id": "two", "audio": "a.wav", "visual": {"file": "a.csv", "rate": 20}, "words": "a.align"},
     {"id": "three", "audio": "a.wav", "transcript": "hello there", "visual": {"file": "a.csv"}}]})")());
   EXPECT_THAT(ids(clips), ElementsAre("one:test", "two:train", "three:train"));
@@ -150,7 +152,7 @@ TEST_F(ManifestTest, EverythingThatAClipMayHave) {
   EXPECT_EQ(one.video().source->rate(), Rational(15));
   EXPECT_EQ(one.phones->phones.at(0).label, "aa");
   EXPECT_EQ(one.transcript->text, "Ah, yes.");
-  EXPECT_EQ(one.landmarks->scheme, "mouth");
+  EXPECT_EQ(find_scheme(one.landmarks->scheme)->name, "tiny");
   EXPECT_EQ(one.landmarks->rate, Rational(15));
   EXPECT_FALSE(one.visual);
   EXPECT_FALSE(clips[1].video);
@@ -188,6 +190,52 @@ TEST_F(ManifestTest, AllThatIsWrongIsToldInOneGo) {
   EXPECT_THAT(error, HasSubstr("\"rate\": must be positive"));
   EXPECT_THAT(error, HasSubstr("m.json:8:2: error: a clip is an object"));
   EXPECT_THAT(error, Not(EndsWith("\n")));
+}
+
+TEST_F(ManifestTest, LandmarksOfSomeFramesInAFolder) {
+  write_audio(path("a.wav"), tone(0.2, 16000));
+  for (const int n : {0, 1, 2}) {
+    std::filesystem::create_directories(folder_ / "frames");
+    cv::imwrite(path("frames/" + std::to_string(n) + ".png"), test_picture(n));
+  }
+  write("tiny.json", R"({"name": "tiny", "mean": [[0, 0], [2, 0], [1, 3]]})");
+  write("own.csv", "x0,y0,x1,y1,x2,y2\n1,2,3,4,5,6\n1,2,3,4,5,6\n1,2,3,4,5,6\n");
+  write("marked/one/000001.pts", "{\n5 6\n7 8\n9 9\n}\n");
+  write("marked/three/000001.pts", "{\n5 6\n7 8\n9 9\n}\n");
+  write("marked/four/000001.draft", "{\n5 6\n7 8\n9 9\n}\n");
+  const auto clips = all(node(R"({"rate": 25, "landmarks": {"folder": "marked", "scheme": "tiny.json"}, "clips": [
+    {"id": "one", "video": "frames", "audio": "a.wav"}, {"id": "two", "video": "frames", "audio": "a.wav"},
+    {"id": "three", "video": "frames", "audio": "a.wav", "landmarks": "own.csv"},
+    {"id": "four", "video": "frames", "audio": "a.wav"}, {"id": "five", "audio": "a.wav"}]})")());
+  ASSERT_TRUE(clips[0].landmarks);
+  EXPECT_EQ(find_scheme(clips[0].landmarks->scheme)->name, "tiny");
+  ASSERT_EQ(clips[0].landmarks->frames.size(), 3u);
+  EXPECT_EQ(clips[0].landmarks->frames[1](2, 0), 8);
+  EXPECT_TRUE(clips[0].landmarks->frames[2].hasNaN());
+  EXPECT_FALSE(clips[1].landmarks) << "nothing is annotated of it";
+  EXPECT_EQ(clips[2].landmarks->frames[0](0, 0), 1) << "a clip's own landmarks count";
+  EXPECT_FALSE(clips[3].landmarks) << "a draft is not used";
+  EXPECT_FALSE(clips[4].landmarks);
+}
+
+TEST_F(ManifestTest, WhatIsWrongWithLandmarksIsToldWithItsPlace) {
+  write_audio(path("a.wav"), tone(0.1, 8000));
+  write("bad.json", "{\"name\": \"bad\"}");
+  const auto error = [&](const std::string& beside, const std::string& clip) {
+    return error_of(
+        [&] { node(fmt::format("{{{} \"clips\": [\n{{\"id\": \"x\", \"audio\": \"a.wav\"{}}}]}}", beside, clip))(); });
+  };
+  EXPECT_THAT(error("", R"(, "landmarks": {"file": "none.csv", "scheme": "ibug"})"),
+              AllOf(HasSubstr("m.json:2:53: error: there is no file or folder"),
+                    HasSubstr("no point scheme \"ibug\" (did you mean \"ibug68\"?)")));
+  EXPECT_THAT(
+      error("", R"(, "landmarks": {"file": "a.wav", "sparse": 1})"),
+      AllOf(HasSubstr("must end in one of .csv, .h5, .hdf5"), HasSubstr("\"sparse\": true or false is expected")));
+  EXPECT_THAT(error(R"("landmarks": {"scheme": "bad.json"},)", ""), HasSubstr("\"landmarks\" needs a \"folder\""));
+  EXPECT_THAT(error(R"("landmarks": {"folder": "f", "scheme": "bad.json"},)", ""),
+              HasSubstr("bad.json:1:1: error: \"mean\" is missing"));
+  EXPECT_THAT(error(R"("landmarks": {"folder": "f", "scheme": "none.json"},)", ""), HasSubstr("there is no file"));
+  EXPECT_THAT(error(R"("landmarks": "f",)", ""), HasSubstr("an object with \"folder\" and \"scheme\" is expected"));
 }
 
 TEST_F(ManifestTest, IdsNameFiles) {

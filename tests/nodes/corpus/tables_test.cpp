@@ -70,31 +70,5 @@ TEST_F(TablesTest, Hdf5) {
   EXPECT_THAT(error_of([&] { read_table(write("c.xls", "x"), ""); }), HasSubstr("c.xls: a track is read from"));
 }
 
-TEST_F(TablesTest, LandmarksFromCsv) {
-  const auto track = read_landmarks(write("a.csv", "frame,x0,y0,x1,y1\n0,1,2,3,4\n1,5,6,7,8\n"), 25);
-  ASSERT_EQ(track.frames.size(), 2u);
-  EXPECT_EQ(track.frames[1], (Shape(2, 2) << 5, 6, 7, 8).finished());
-  EXPECT_EQ(track.scheme, "");
-  EXPECT_EQ(read_landmarks(write("b.csv", "1,2,3,4\n"), 25, "two").scheme, "two");
-  EXPECT_THAT(error_of([&] { read_landmarks(write("c.csv", "frame,x0,y0\n0,1,2\n2,1,2\n"), 25); }),
-              HasSubstr("frame 1 is expected"));
-  EXPECT_THAT(error_of([&] { read_landmarks(write("d.csv", "1,2,3\n"), 25); }),
-              HasSubstr("landmarks need the columns"));
-}
-
-TEST_F(TablesTest, LandmarksFromPtsFolder) {
-  write("f2.pts", "version: 1\nn_points: 2\n{\n1 2\n3.5 4\n}\n");
-  write("f10.pts", "version: 1\nn_points: 2\n{\n5 6\n7 8\n}\n");
-  const auto track = read_landmarks(folder_.string(), {30});
-  ASSERT_EQ(track.frames.size(), 2u);
-  EXPECT_EQ(track.frames[0], (Shape(2, 2) << 0, 1, 2.5, 3).finished()) << "1-based pixels become 0-based";
-  EXPECT_EQ(track.frames[1], (Shape(2, 2) << 4, 5, 6, 7).finished());
-  EXPECT_EQ(track.rate, Rational(30));
-  write("f11.pts", "{\n5 6\n}\n");
-  EXPECT_THAT(error_of([&] { read_landmarks(folder_.string(), 25); }), HasSubstr("f11.pts: holds 1 points"));
-  write("f11.pts", "{\n5\n}\n");
-  EXPECT_THAT(error_of([&] { read_landmarks(folder_.string(), 25); }), HasSubstr("f11.pts:2: \"x y\""));
-}
-
 }  // namespace
 }  // namespace talkgraph

@@ -181,6 +181,15 @@ TEST(MouthOpening, TellsClosedFromOpenPhones) {
   EXPECT_EQ(other.values, (std::map<std::string, double>{{"closed", 0.25}}));
 }
 
+TEST(MouthOpening, TakesThePointsOfTheScheme) {
+  LandmarkTrack landmarks{{Shape::Zero(56, 2)}, Rational(25), "face56"};
+  landmarks.frames[0](54, 1) = 1;  // the middle of the inner lower lip
+  landmarks.frames[0](42, 0) = 4;  // a corner
+  EXPECT_DOUBLE_EQ(MouthOpening{}(landmarks, {{"b"}, Rational(25)})->values.at("closed"), 0.25);
+  landmarks.frames[0].row(0).setConstant(NAN);
+  EXPECT_THROW(MouthOpening{}(landmarks, {{"b"}, Rational(25)}), std::runtime_error);
+}
+
 TEST(MouthOpening, SaysNothingWithoutItsPhonesAndRefusesWhatDoesNotFit) {
   EXPECT_FALSE(MouthOpening{}({}, {}));
   EXPECT_FALSE(MouthOpening{}(mouth({1}), {{"s"}, Rational(25)}));

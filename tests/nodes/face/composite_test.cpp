@@ -203,6 +203,17 @@ TEST(Crop, HoldsThePointsOfEveryFrame) {
   EXPECT_NE(part.source->key(), video.source->key());
 }
 
+TEST(Crop, KnowsPointsByTheirNamesInTheScheme) {
+  const auto video = still(0.5, 1);
+  LandmarkTrack track{{Shape::Zero(68, 2), Shape::Constant(68, 2, NAN)}, Rational(25), "ibug68"};
+  track.frames[0].row(48) << 20, 30;
+  track.frames[0].row(54) << 60, 34;
+  const Crop by_name{{}, 0, {"mouth_left", "mouth_right"}}, by_number{{48, 54}, 0};
+  EXPECT_EQ(by_name(video, track).source->key(), by_number(video, track).source->key());
+  EXPECT_EQ(by_name(video, track).source->size(), cv::Size(42, 6));
+  EXPECT_THROW((Crop{{}, 0, {"mouth"}}(video, track)), std::runtime_error);
+}
+
 TEST(Crop, RefusesWhatHoldsNothing) {
   const auto video = still(0.5, 1);
   EXPECT_THAT(crop_error(video, {}), testing::HasSubstr("still: there are no landmarks"));

@@ -93,10 +93,12 @@ TEST(FaceTrack, GivesItsParametersWithLostFramesAndItsLandmarks) {
   const auto t = track(video_from_frames(frames, Rational(25)));
   EXPECT_EQ(FaceParameters{}(t).lost, (std::vector<std::int64_t>{2}));
   EXPECT_EQ(FaceParameters{}(t).values, t.parameters.values);
-  const auto landmarks = FaceLandmarks{}(t);
+  const auto landmarks = FaceLandmarks{}(t, &model());
   EXPECT_EQ(landmarks.rate, Rational(25));
   ASSERT_EQ(landmarks.frames.size(), 4u);
   EXPECT_EQ(landmarks.frames[3], t.shapes[3]);
+  EXPECT_EQ(landmarks.scheme, "synthetic");
+  EXPECT_EQ(FaceLandmarks{}(t, nullptr).scheme, "");
 }
 
 TEST(TrackFace, CopiesIntoLostEnds) {

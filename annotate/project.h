@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "annotate/annotations.h"
+#include "annotate/beginning.h"
+#include "annotate/frames.h"
+#include "graph/json.h"
+#include "nodes/types/scheme.h"
+
+namespace talkgraph::annotate {
+
+struct ProjectOptions {
+  int frames = 20;  ///< to annotate
+  std::uint64_t seed = 1;
+  std::string scheme = {};  ///< name or file of a point scheme; empty: as the manifest says, else "ibug68"
+};
+
+/// The frames of a manifest's clips that a person annotates: those of the split "train" that have pictures and no
+/// landmarks of their own. May be used by any threads.
+class Project {
+ public:
+  /// Where the manifest does not yet say where annotations are, it is told: "landmarks": {"folder": "annotated", ...}.
+  /// What is wrong with the manifest goes to `diagnostics`; then, null. Throws std::runtime_error if there is no clip
+  /// to annotate or a file cannot be read or written.
+  static std::unique_ptr<Project> open(const std::string& manifest, const ProjectOptions& options,
+                                       Diagnostics& diagnostics);
+
+  const std::string& manifest() const { return manifest_; }
+  const PointScheme& scheme() const { return scheme_; }
+  const std::vector<Frame>& frames() const { return frames_; }
+  const std::string& clip(std::size_t frame) const { return clips_[frames_[frame].clip].id; }
+  const std::filesystem::path& folder() const { return annotations_.folder(); }
+
+  /// Decoded when first asked for, with all others of its clip. Throws std::runtime_error that names the video.
+  cv::Mat picture(std::size_t frame);
+  std::optional<Annotation> annotation(std::size_t frame) const;
+  /// Throws std::invalid_argument unless the points are the scheme's in number, near the picture, and, for a frame that
+  /// is done, in it: nothing is learnt from a face that leaves the picture.
+  Annotations::Written annotate(std::size_t frame, const Annotation& next, const std::string& tag);
+  /// Points to begin with; never the frame's own annotation.
+  Beginning begin(std::size_t frame);
+
+ private:
+  Project(std::string manifest, std::vector<Clip> clips, PointScheme scheme, std::string scheme_name,
+          std::filesystem::path folder, const ProjectOptions& options);
+  void read_clip(std::size_t clip);
+
+  const std::string manifest_;
+  const std::vector<Clip> clips_;
+  const PointScheme scheme_;
+  const std::string scheme_name_;  ///< as landmarks carry it
+  Annotations annotations_;
+  std::vector<Frame> frames_;
+  Beginner beginner_;
+  std::mutex pictures_mutex_;
+  std::map<std::pair<std::size_t, std::int64_t>, cv::Mat> pictures_;  ///< by clip and number
+};
+
+}  // namespace talkgraph::annotate

@@ -1,0 +1,244 @@
+#include "annotate/server.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "nodes/codecs/codecs.h"
+#include "nodes/types/codec.h"
+
+namespace talkgraph::annotate {
+namespace {
+
+using httplib::Request;
+using httplib::Response;
+
+constexpr const char* page_html =
+#include "annotate/index.html.inc"
+    ;
+constexpr const char* page_style =
+#include "annotate/annotate.css.inc"
+    ;
+constexpr const char* page_script =
+#include "annotate/annotate.js.inc"
+    ;
+
+constexpr auto address = "127.0.0.1";
+constexpr std::size_t longest_body = 1 << 18;
+
+/// What a request is refused with.
+struct Refusal : std::runtime_error {
+  Refusal(int status, const std::string& what) : std::runtime_error(what), status(status) {}
+  int status;
+};
+
+Json to_json(const Shape& points) {
+  Json all = Json::array();
+  for (const auto& point : points.rowwise()) all.push_back({point.x(), point.y()});
+  return all;
+}
+
+Shape points_in(const Json& json) {
+  if (!json.is_array()) throw Refusal(400, "\"points\" is a list of [x, y]");
+  Shape points(std::ssize(json), 2);
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const Json& point = json[i];
+    if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number())
+      throw Refusal(400, "\"points\" is a list of [x, y]");
+    points.row(static_cast<Eigen::Index>(i)) << point[0].get<double>(), point[1].get<double>();
+  }
+  return points;
+}
+
+Annotation annotation_in(const std::string& body) {
+  const auto json = Json::parse(body, nullptr, false);
+  if (!json.is_object() || !json.contains("points") || !json.contains("done") || !json["done"].is_boolean())
+    throw Refusal(400, "an object with \"points\" and \"done\" is expected");
+  return {points_in(json["points"]), json["done"].get<bool>()};
+}
+
+const char* state_of(const std::optional<Annotation>& annotation) {
+  return !annotation ? "new" : annotation->done ? "done" : "draft";
+}
+
+Json to_json(const std::optional<Annotation>& annotation) {
+  Json json = {{"state", state_of(annotation)}, {"tag", tag_of(annotation)}};
+  if (annotation) json["points"] = to_json(annotation->points);
+  return json;
+}
+
+Json to_json(const Beginning& beginning) {
+  constexpr const char* names[] = {"scheme", "examples", "model"};
+  return {{"points", to_json(beginning.points)}, {"by", names[static_cast<int>(beginning.by)]}};
+}
+
+Json to_json(const PointScheme& scheme) {
+  Json groups = Json::array();
+  for (const auto& group : scheme.groups)
+    groups.push_back({{"name", group.name}, {"points", group.points}, {"closed", group.closed}});
+  return {{"name", scheme.name}, {"points", scheme.points()}, {"groups", groups}, {"pairs", scheme.pairs}};
+}
+
+/// A name that leads here only by a trick (DNS rebinding), or a page of another site, is not served.
+void check_source(const Request& request) {
+  const auto host = request.get_header_value("Host");
+  const auto name = host.substr(0, host.find(':'));
+  if (name != address && name != "localhost")
+    throw Refusal(403, "this server is reached as 127.0.0.1 or localhost, and by no other name");
+  if (request.has_header("Origin") && request.get_header_value("Origin") != "http://" + host)
+    throw Refusal(403, "a page of another origin asks");
+}
+
+void answer(Response& response, const Json& json, int status = 200) {
+  response.status = status;
+  response.set_content(json.dump(), "application/json");
+}
+
+void answer_failure(Response& response, const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const Refusal& e) {
+    answer(response, {{"error", e.what()}}, e.status);
+  } catch (const std::invalid_argument& e) {
+    answer(response, {{"error", e.what()}}, 400);
+  } catch (const std::exception& e) {
+    answer(response, {{"error", e.what()}}, 500);
+  }
+}
+
+const httplib::Headers headers = {
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; "
+     "form-action 'none'; frame-ancestors 'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cache-Control", "no-store"},
+};
+
+}  // namespace
+
+struct Server::State {
+  explicit State(Project& project) : project(project) {}
+
+  std::size_t frame_of(const Request& request) const {
+    const auto frame = std::stoul(request.matches[1].str());
+    if (frame >= project.frames().size()) throw Refusal(404, "there is no such frame");
+    return frame;
+  }
+
+  Json describe() const {
+    Json frames = Json::array();
+    for (std::size_t f = 0; f < project.frames().size(); ++f)
+      frames.push_back(
+          {{"clip", project.clip(f)}, {"number", project.frames()[f].number}, {"phone", project.frames()[f].phone}});
+    return {{"manifest", project.manifest()}, {"scheme", to_json(project.scheme())}, {"frames", frames}};
+  }
+
+  Json states() const {
+    Json all = Json::array();
+    for (std::size_t f = 0; f < project.frames().size(); ++f) {
+      const auto annotation = project.annotation(f);
+      all.push_back({{"state", state_of(annotation)}, {"tag", tag_of(annotation)}});
+    }
+    return all;
+  }
+
+  Json read(std::size_t frame) const {
+    const auto annotation = project.annotation(frame);
+    Json json = to_json(annotation);
+    if (!annotation) json.update(to_json(project.begin(frame)));
+    return json;
+  }
+
+  void write(const Request& request, Response& response) const {
+    if (request.get_header_value("Content-Type") != "application/json") throw Refusal(415, "JSON is expected");
+    if (!request.has_header("If-Match")) throw Refusal(428, "If-Match must say which state was changed");
+    const auto written =
+        project.annotate(frame_of(request), annotation_in(request.body), request.get_header_value("If-Match"));
+    answer(response, to_json(written.now), written.kept ? 200 : 412);
+  }
+
+  void send_picture(std::size_t frame, Response& response) const {
+    std::vector<std::uint8_t> png;
+    codec<decltype(codec_encode_png)>("codec_encode_png")(project.picture(frame), png);
+    response.set_content(reinterpret_cast<const char*>(png.data()), png.size(), "image/png");
+  }
+
+  void route() {
+    const auto page = [](const char* text, const char* type) {
+      return [=](const Request&, Response& response) { response.set_content(text, type); };
+    };
+    server.Get("/", page(page_html, "text/html; charset=utf-8"));
+    server.Get("/annotate.css", page(page_style, "text/css; charset=utf-8"));
+    server.Get("/annotate.js", page(page_script, "text/javascript; charset=utf-8"));
+    server.Get("/api/project", [this](const Request&, Response& out) { answer(out, describe()); });
+    server.Get("/api/frames", [this](const Request&, Response& out) { answer(out, states()); });
+    server.Get(R"(/api/frames/(\d{1,6}))",
+               [this](const Request& in, Response& out) { answer(out, read(frame_of(in))); });
+    server.Get(R"(/api/frames/(\d{1,6})/begin)",
+               [this](const Request& in, Response& out) { answer(out, to_json(project.begin(frame_of(in)))); });
+    server.Get(R"(/api/frames/(\d{1,6})/picture)",
+               [this](const Request& in, Response& out) { send_picture(frame_of(in), out); });
+    server.Put(R"(/api/frames/(\d{1,6}))", [this](const Request& in, Response& out) { write(in, out); });
+  }
+
+  void protect() {
+    server.set_default_headers(headers);
+    server.set_payload_max_length(longest_body);
+    // One request a connection: the body of one that was refused unread must not be taken for the next.
+    server.set_keep_alive_max_count(1);
+    server.set_read_timeout(std::chrono::seconds(5));
+    server.set_pre_routing_handler([](const Request& request, Response& response) {
+      try {
+        check_source(request);
+        return httplib::Server::HandlerResponse::Unhandled;
+      } catch (const Refusal&) {
+        answer_failure(response, std::current_exception());
+        return httplib::Server::HandlerResponse::Handled;
+      }
+    });
+    server.set_exception_handler(
+        [](const Request&, Response& response, std::exception_ptr failure) { answer_failure(response, failure); });
+    // The library would let several servers share a port.
+    server.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+  }
+
+  Project& project;
+  httplib::Server server;
+};
+
+Server::Server(Project& project, int port) : state_(std::make_unique<State>(project)) {
+  state_->protect();
+  state_->route();
+  auto& server = state_->server;
+  port_ = port == 0 ? server.bind_to_any_port(address) : server.bind_to_port(address, port) ? port : -1;
+  if (port_ < 0)
+    throw std::runtime_error(fmt::format("port {} is taken: name another with --port, or 0 for any free one", port));
+}
+
+Server::~Server() = default;
+
+std::string Server::url() const { return fmt::format("http://{}:{}/", address, port_); }
+
+void Server::run(const std::atomic<bool>& stop) {
+  std::atomic<bool> ended = false;
+  std::thread watch([&] {
+    while (!ended) {
+      if (stop) state_->server.stop();
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  });
+  state_->server.listen_after_bind();
+  ended = true;
+  watch.join();
+}
+
+}  // namespace talkgraph::annotate

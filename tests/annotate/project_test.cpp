@@ -1,0 +1,148 @@
+#include "annotate/project.h"
+
+#include <fmt/format.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "nodes/corpus/manifest.h"
+#include "nodes/media/audio_file.h"
+#include "tests/annotate/corpus.h"
+
+namespace talkgraph::annotate {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class ProjectTest : public CorpusTest {
+ protected:
+  std::string error(const ProjectOptions& options = {}) {
+    return error_of([&] {
+      Diagnostics diagnostics;
+      if (!Project::open(manifest_, options, diagnostics)) throw std::runtime_error(diagnostics.str());
+    });
+  }
+};
+
+TEST_F(ProjectTest, TellsTheManifestWhereAnnotationsAreOnce) {
+  const auto before = bytes(manifest_);
+  open();
+  const auto told = bytes(manifest_);
+  EXPECT_THAT(told,
+              HasSubstr("\n \"landmarks\": {\"folder\":\"annotated\",\"scheme\":\"synthetic.json\"},\n \"clips\": ["));
+  EXPECT_EQ(told.size(), before.size() + told.find("\"clips\"") - before.find("\"clips\"")) << "nothing else changes";
+  open();
+  EXPECT_EQ(bytes(manifest_), told);
+  EXPECT_THAT(error({.scheme = "face56"}), HasSubstr("names another point scheme"));
+  EXPECT_EQ(open({.scheme = ""})->scheme().name, "synthetic");
+}
+
+TEST_F(ProjectTest, ManifestsInOneLineAndWithoutAscii) {
+  write("m.json", fmt::format(R"({{"description": "Größe ✓", "clips": [{}]}})", clip_json("one")));
+  Diagnostics diagnostics;
+  ASSERT_TRUE(Project::open(path("m.json"), {.scheme = path("synthetic.json")}, diagnostics));
+  EXPECT_THAT(
+      bytes(path("m.json")),
+      HasSubstr("Größe ✓\", \"landmarks\": {\"folder\":\"annotated\",\"scheme\":\"synthetic.json\"}, \"clips\""));
+}
+
+TEST_F(ProjectTest, OffersTrainingClipsWithoutLandmarksOfTheirOwn) {
+  write("own.csv", "1,2\n");
+  write_manifest(
+      {clip_json("one"), clip_json("two", R"(, "split": "test")"), clip_json("three", R"(, "landmarks": "own.csv")")});
+  const auto project = open({.frames = 30});
+  ASSERT_EQ(project->frames().size(), static_cast<std::size_t>(pictures));
+  for (std::size_t f = 0; f < project->frames().size(); ++f) EXPECT_EQ(project->clip(f), "one");
+  write_manifest({clip_json("two", R"(, "split": "test")")});
+  EXPECT_THAT(error({.scheme = path("synthetic.json")}), HasSubstr("there is no clip to annotate"));
+}
+
+TEST_F(ProjectTest, WhatIsWrongIsTold) {
+  EXPECT_THAT(error({.scheme = "ibug"}), HasSubstr("did you mean \"ibug68\"?"));
+  write("bad.json", "{}");
+  EXPECT_THAT(error({.scheme = path("bad.json")}), HasSubstr("bad.json:1:1: error: \"mean\" is missing"));
+  EXPECT_THAT(error({.scheme = path("none.json")}), HasSubstr("none.json: is missing"));
+  write("m.json", "{\"clips\": [{\"id\": 3}]}");
+  manifest_ = path("m.json");
+  EXPECT_THAT(error(), HasSubstr("m.json:1:"));
+}
+
+TEST_F(ProjectTest, RefusesPointsThatNothingCouldBeLearntFrom) {
+  const auto project = open();
+  const Shape good = truth(*project, 0);
+  const auto annotate = [&](const Shape& points, bool done) {
+    return error_of([&] { project->annotate(0, {points, done}, "none"); });
+  };
+  EXPECT_THAT(annotate(good.topRows(3), false), HasSubstr("points are needed, got 3"));
+  Shape bad = good;
+  bad(4, 0) = -1;
+  EXPECT_THAT(annotate(bad, true), HasSubstr("point 4 lies outside the picture"));
+  bad(4, 0) = -5000;
+  EXPECT_THAT(annotate(bad, false), HasSubstr("point 4 is far outside"));
+  bad(4, 0) = NAN;
+  EXPECT_THAT(annotate(bad, false), HasSubstr("point 4 is far outside"));
+  bad(4, 0) = -1;
+  EXPECT_TRUE(project->annotate(0, {bad, false}, "none").kept) << "a draft may";
+}
+
+TEST_F(ProjectTest, BeginsWithTheSchemeThenTheExamplesThenTheModel) {
+  const auto project = open({.frames = 8});
+  const auto begun = project->begin(7);
+  EXPECT_EQ(begun.by, Beginning::By::scheme);
+  const Shape& mean = begun.points;
+  EXPECT_NEAR((mean.col(0).maxCoeff() + mean.col(0).minCoeff()) / 2, 99.5, 1e-9);
+  EXPECT_NEAR((mean.col(1).maxCoeff() + mean.col(1).minCoeff()) / 2, 99.5, 1e-9);
+
+  finish(*project, 0);
+  EXPECT_EQ(project->begin(7).by, Beginning::By::examples);
+  EXPECT_EQ(project->begin(7).points, truth(*project, 0));
+  project->annotate(1, {truth(*project, 1), false}, "none");
+  EXPECT_EQ(project->begin(7).points, truth(*project, 0)) << "drafts do not count";
+  finish(*project, 2);
+  finish(*project, 3);
+  const auto fitted = project->begin(7);
+  EXPECT_EQ(fitted.by, Beginning::By::model);
+  EXPECT_LT(test::rms_distance(fitted.points, truth(*project, 7)), 2.5);
+  finish(*project, 4);
+  finish(*project, 5);
+  finish(*project, 6);
+  const auto better = project->begin(7);
+  EXPECT_LT(test::rms_distance(better.points, truth(*project, 7)), 1);
+  EXPECT_EQ(project->begin(7).points, better.points);
+}
+
+TEST_F(ProjectTest, WhatWasAnnotatedIsThereAgainAlsoIfOtherFramesAreChosen) {
+  std::vector<std::pair<std::string, std::int64_t>> annotated;
+  {
+    const auto project = open({.frames = 3});
+    for (std::size_t f = 0; f < 3; ++f) {
+      finish(*project, f);
+      annotated.emplace_back(project->clip(f), project->frames()[f].number);
+    }
+  }
+  const auto project = open({.frames = 3, .seed = 99});
+  std::size_t found = 0;
+  for (std::size_t f = 0; f < project->frames().size(); ++f) {
+    const auto annotation = project->annotation(f);
+    found += annotation.has_value();
+    if (!annotation) continue;
+    EXPECT_TRUE(annotation->done);
+    EXPECT_TRUE(annotation->points.isApprox(truth(*project, f), 1e-12));
+    EXPECT_THAT(annotated, testing::Contains(std::pair(project->clip(f), project->frames()[f].number)));
+  }
+  EXPECT_EQ(found, 3u);
+}
+
+TEST_F(ProjectTest, TheManifestGivesTheAnnotatedFramesToATrainingGraph) {
+  const auto project = open({.frames = 3});
+  for (std::size_t f = 0; f < 3; ++f) finish(*project, f);
+  auto stream = Manifest{{manifest_}}();
+  std::size_t whole = 0;
+  while (auto item = stream.next())
+    if (item->value.landmarks)
+      for (const auto& shape : item->value.landmarks->frames) whole += shape.allFinite();
+  EXPECT_EQ(whole, 3u);
+}
+
+}  // namespace
+}  // namespace talkgraph::annotate
