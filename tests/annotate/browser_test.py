@@ -306,7 +306,8 @@ class AnnotateTest(unittest.TestCase):
         wait_for(lambda: "point 7 lies outside the picture" in self.status(), "a refusal")
         self.assertEqual(self.browser.run("return current.index"), 3)
         self.browser.keys("r")
-        self.assertTrue(self.close(self.saved(), fitted), "begun afresh")
+        wait_for(lambda: self.close(self.shown(), fitted), "the frame to begin afresh")
+        self.saved()
         # Done is not for ever.
         self.browser.keys("PageUp")
         self.ready()
