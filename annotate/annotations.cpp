@@ -25,17 +25,6 @@ bool is_number(const std::string& text) {
   return !text.empty() && text.size() < 12 && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// Of two files of a frame, left when a process was killed between writing one and removing the other, the draft
-/// counts.
-void remove_doubles(const fs::path& folder) {
-  std::vector<fs::path> doubles;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.path().extension() == draft_ending)
-      if (const auto other = fs::path(entry.path()).replace_extension(done_ending); fs::exists(other))
-        doubles.push_back(other);
-  for (const auto& file : doubles) fs::remove(file);
-}
-
 }  // namespace
 
 std::string tag_of(const std::optional<Annotation>& annotation) {
@@ -44,9 +33,7 @@ std::string tag_of(const std::optional<Annotation>& annotation) {
 }
 
 Annotations::Annotations(fs::path folder, Eigen::Index points) : folder_(std::move(folder)), points_(points) {
-  if (!fs::is_directory(folder_)) return;
-  sweep_parts(folder_);
-  remove_doubles(folder_);
+  if (fs::is_directory(folder_)) sweep_parts(folder_);
 }
 
 std::optional<Annotation> Annotations::read_unlocked(const std::string& clip, std::int64_t frame) const {
@@ -72,8 +59,12 @@ Annotations::Written Annotations::write(const std::string& clip, std::int64_t fr
   const std::lock_guard lock(mutex_);
   auto before = read_unlocked(clip, frame);
   if (tag_of(before) != tag) return {false, std::move(before)};
-  write_file(file_of(folder_, clip, frame, next.done), pts_text(next.points));
-  if (before && before->done != next.done) fs::remove(file_of(folder_, clip, frame, before->done));
+  const auto draft = file_of(folder_, clip, frame, false), done = file_of(folder_, clip, frame, true);
+  // A frame that is done becomes a draft first, and a draft done last: at no time are there two files, or none.
+  if (before && before->done && !next.done) fs::rename(done, draft);
+  const bool from_draft = before && !before->done && next.done;
+  write_file(next.done && !from_draft ? done : draft, pts_text(next.points));
+  if (from_draft) fs::rename(draft, done);
   return {true, read_unlocked(clip, frame)};
 }
 

@@ -25,7 +25,7 @@ std::string tag_of(const std::optional<Annotation>& annotation);
 /// threads.
 class Annotations {
  public:
-  /// Puts in order what a process that was killed left.
+  /// Removes what a process that was killed left unfinished.
   Annotations(std::filesystem::path folder, Eigen::Index points);
 
   const std::filesystem::path& folder() const { return folder_; }

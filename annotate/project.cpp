@@ -1,8 +1,12 @@
 #include "annotate/project.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <set>
 #include <stdexcept>
 
@@ -116,12 +120,25 @@ std::unique_ptr<Project> Project::open(const std::string& manifest, const Projec
       new Project(manifest, std::move(clips), known_scheme(folder.scheme), folder.scheme, folder.path, options));
 }
 
+FolderLock::FolderLock(const fs::path& folder) {
+  fs::create_directories(folder);
+  descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  const bool taken = errno == EWOULDBLOCK;
+  if (descriptor_ >= 0) close(descriptor_);
+  throw std::runtime_error(folder.string() + (taken ? ": is being annotated by another talkgraph already; open its page"
+                                                    : ": cannot be locked"));
+}
+
+FolderLock::~FolderLock() { close(descriptor_); }
+
 Project::Project(std::string manifest, std::vector<Clip> clips, PointScheme scheme, std::string scheme_name,
                  fs::path folder, const ProjectOptions& options)
     : manifest_(std::move(manifest)),
       clips_(std::move(clips)),
       scheme_(std::move(scheme)),
       scheme_name_(std::move(scheme_name)),
+      lock_(folder),
       annotations_(std::move(folder), scheme_.points()),
       frames_(all_frames(clips_, annotations_, options)),
       beginner_(scheme_.mean) {}

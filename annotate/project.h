@@ -15,6 +15,18 @@
 
 namespace talkgraph::annotate {
 
+/// Holds a folder, which it makes, against other processes and projects. Throws std::runtime_error if one has it.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 struct ProjectOptions {
   int frames = 20;  ///< to annotate
   std::uint64_t seed = 1;
@@ -55,6 +67,7 @@ class Project {
   const std::vector<Clip> clips_;
   const PointScheme scheme_;
   const std::string scheme_name_;  ///< as landmarks carry it
+  const FolderLock lock_;
   Annotations annotations_;
   std::vector<Frame> frames_;
   Beginner beginner_;

@@ -82,9 +82,10 @@ async function save(frame) {
 function changed_elsewhere(frame, sent, answer) {
   frame.state = answer.state;
   frame.tag = answer.tag;
-  if (!answer.points) {
-    frame.unsaved = true;  // its file is gone
-  } else if (!same(rounded(answer.points), sent.points) || (answer.state === "done") !== sent.done) {
+  if (!answer.points || same(rounded(answer.points), sent.points)) {
+    // Its file is gone, or the server was killed when it had written these points: said once more.
+    frame.unsaved ||= answer.state !== (sent.done ? "done" : "draft");
+  } else {
     keep_step(frame);
     frame.points = rounded(answer.points);
     frame.done = answer.state === "done";

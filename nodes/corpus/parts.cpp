@@ -11,8 +11,10 @@ namespace {
 
 void check_landmarks(const LandmarkTrack& landmarks, const VideoSource& video) {
   if (std::abs(std::ssize(landmarks.frames) - video.frames()) > 2)
-    throw std::runtime_error(fmt::format("{}: has {} frames, but its landmarks are of {}", video.name(), video.frames(),
-                                         landmarks.frames.size()));
+    throw std::runtime_error(
+        fmt::format("{}: has {} frames, but its landmarks are of {}; if they are of some frames only, the manifest "
+                    "says \"sparse\": true",
+                    video.name(), video.frames(), landmarks.frames.size()));
   if (landmarks.rate != video.rate())
     throw std::runtime_error(fmt::format("{}: has {} frames per second, but its landmarks {}", video.name(),
                                          video.rate().str(), landmarks.rate.str()));

@@ -132,6 +132,13 @@ TEST_F(ProjectTest, WhatWasAnnotatedIsThereAgainAlsoIfOtherFramesAreChosen) {
   EXPECT_EQ(found, 3u);
 }
 
+TEST_F(ProjectTest, OneProcessAtATimeAnnotates) {
+  auto project = open();
+  EXPECT_THAT(error(), HasSubstr("annotated: is being annotated by another talkgraph already"));
+  project.reset();
+  EXPECT_EQ(error(), "no error");
+}
+
 TEST_F(ProjectTest, TheManifestGivesTheAnnotatedFramesToATrainingGraph) {
   const auto project = open({.frames = 3});
   for (std::size_t f = 0; f < 3; ++f) finish(*project, f);

@@ -114,7 +114,7 @@ TEST_F(ServerTest, RefusesWhatIsNoAnnotation) {
   outside(3, 0) = 250;
   EXPECT_THAT(put(body(outside, true), fresh, 400)["error"].get<std::string>(), HasSubstr("point 3 lies outside"));
   EXPECT_EQ(get("/api/frames")[0]["state"], "new");
-  EXPECT_FALSE(std::filesystem::exists(path("annotated")));
+  EXPECT_TRUE(std::filesystem::is_empty(path("annotated")));
 }
 
 TEST_F(ServerTest, RequestsAreBounded) {

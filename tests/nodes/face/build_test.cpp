@@ -1,5 +1,6 @@
 #include "nodes/face/build.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -68,6 +69,18 @@ TEST(BuildAppearance, SurvivesSavingAndLoading) {
   AppearanceModel loaded;
   fields(*hdf5_reader(path), loaded);
   EXPECT_EQ(hash(loaded), hash(m));
+}
+
+TEST(BuildAppearance, TakesTheTrianglesOfTheScheme) {
+  auto prototypes = test::synthetic_prototypes();
+  std::string mean;
+  for (Eigen::Index i = 0; i < prototypes.shapes[0].rows(); ++i)
+    mean += fmt::format("{}[{}, {}]", i ? ", " : "", prototypes.shapes[0](i, 0), prototypes.shapes[0](i, 1));
+  prototypes.scheme = fmt::format(R"({{"name": "star", "triangles": [[0, 5, 11], [5, 8, 11]], "mean": [{}]}})", mean);
+  Context context;
+  EXPECT_EQ(BuildAppearance{}(prototypes, context).triangles, (Triangles(2, 3) << 0, 5, 11, 5, 8, 11).finished());
+  for (auto& shape : prototypes.shapes) shape.conservativeResize(20, 2);
+  EXPECT_THROW(BuildAppearance{}(prototypes, context), std::runtime_error) << "the scheme has more points";
 }
 
 TEST(BuildAppearance, OnePrototypeGivesARigidModel) {
