@@ -5,7 +5,7 @@ const $ = (id) => document.getElementById(id);
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const steps_kept = 100;
 
-let scheme, frames = [], current = null, selected = 0;
+let scheme, frames = [], current = null, opened = null, selected = 0;  // opened: the frame whose picture is shown
 let view = { scale: 1, x: 0, y: 0 }, size = null;  // a point p is drawn at scale · p + (x, y)
 let drag = null;
 let offline = false, note = "";
@@ -31,6 +31,7 @@ function take(frame, answer) {
   frame.state = answer.state;
   frame.tag = answer.tag;
   frame.by = answer.by;
+  frame.done = answer.state === "done";
   if (answer.points) frame.points = rounded(answer.points);
 }
 
@@ -43,14 +44,18 @@ async function load(frame) {
   take(frame, answer);
 }
 
-/** Sends the newest points until the server has them. */
-async function save(frame) {
+function save(frame) {
   frame.unsaved = true;
-  if (frame.saving) return;
+  if (!frame.saving) frame.settled = send(frame);
+}
+
+/** Sends the newest points until the server has them. */
+async function send(frame) {
   frame.saving = true;
   while (frame.unsaved) {
     frame.unsaved = false;
     const sent = { points: frame.points, done: frame.done };
+    frame.sent.push(sent);
     try {
       const { status, answer } = await request(`api/frames/${frame.index}`, {
         method: "PUT",
@@ -59,15 +64,16 @@ async function save(frame) {
         body: JSON.stringify(sent),
       });
       offline = false;
-      if (status === 200) {
+      if (status === 412) {
+        meet_other_state(frame, answer);
+      } else if (status === 200) {
         frame.state = answer.state;
         frame.tag = answer.tag;
-      } else if (status === 412) {
-        changed_elsewhere(frame, sent, answer);
       } else {
         note = answer.error;
         frame.done = frame.state === "done";
       }
+      frame.sent = [];
     } catch {
       offline = true;
       frame.unsaved = true;
@@ -79,15 +85,16 @@ async function save(frame) {
   show();
 }
 
-function changed_elsewhere(frame, sent, answer) {
+/** The server has another state than the one that was changed: what was sent before it was killed, or another's work. */
+function meet_other_state(frame, answer) {
   frame.state = answer.state;
   frame.tag = answer.tag;
-  if (!answer.points || same(rounded(answer.points), sent.points)) {
-    // Its file is gone, or the server was killed when it had written these points: said once more.
-    frame.unsaved ||= answer.state !== (sent.done ? "done" : "draft");
+  const points = answer.points && rounded(answer.points);
+  if (!points || frame.sent.some((sent) => same(sent.points, points))) {
+    frame.unsaved = true;
   } else {
     keep_step(frame);
-    frame.points = rounded(answer.points);
+    frame.points = points;
     frame.done = answer.state === "done";
     frame.unsaved = false;
     note = "changed in another window; Undo brings yours back";
@@ -104,13 +111,8 @@ async function watch() {
       for (const frame of frames) {
         const now = states[frame.index];
         if (frame.saving || frame.unsaved || frame.tag === now.tag) continue;
-        if (frame === current) {
-          await load(frame);
-          frame.done = frame.state === "done";
-        } else {
-          frame.points = null;
-          frame.state = now.state;
-        }
+        if (frame === current) await load(frame);
+        else Object.assign(frame, now, { points: null, done: now.state === "done" });
       }
     } catch (error) {
       if (error instanceof TypeError) offline = true;
@@ -186,6 +188,9 @@ function set_done(done) {
 
 // ---------------------------------------------------------------- moving points
 
+/** Whether points may be moved. */
+const ready = () => current?.points && opened === current;
+
 const mode = () => document.querySelector("input[name=mode]:checked").value;
 
 /** The points that move with one. */
@@ -260,7 +265,7 @@ function grabbed(event) {
 }
 
 function pointer_down(event) {
-  if (!current?.points || drag) return;
+  if (!ready() || drag) return;
   $("picture").focus();
   $("picture").setPointerCapture(event.pointerId);
   const point = event.button === 0 ? grabbed(event) : -1;
@@ -339,14 +344,14 @@ const keys = {
 const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 function key_down(event) {
-  if (!current?.points || event.altKey || event.metaKey) return;
+  if (!current || event.altKey || event.metaKey) return;
   const on_button = event.target.closest("button, input");
   if (on_button && ["Enter", " ", ...Object.keys(arrows)].includes(event.key)) return;
   const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
   let act = keys[key];
   if (event.ctrlKey) act = key === "z" ? (event.shiftKey ? redo : undo) : key === "y" ? redo : null;
   else if (arrows[key]) act = () => nudge(...arrows[key].map((d) => d * (event.shiftKey ? 5 : 0.5)));
-  if (!act || (drag && key !== "Escape")) return;
+  if (!act || (drag && key !== "Escape") || (!ready() && !key.startsWith("Page"))) return;
   event.preventDefault();
   act();
 }
@@ -430,7 +435,7 @@ function show() {
   $("undo").disabled = !current?.past.length;
   $("redo").disabled = !current?.future.length;
   $("reopen").hidden = !current?.done;
-  $("done").disabled = $("afresh").disabled = !current?.points;
+  $("done").disabled = $("afresh").disabled = !ready();
   show_status();
   draw();
 }
@@ -450,17 +455,22 @@ function load_picture(frame) {
   });
 }
 
+/** What the model is built of is saved first, unless the server does not answer. */
+const all_saved = () => Promise.race([Promise.all(frames.map((frame) => frame.settled)), sleep(3000)]);
+
 async function open_frame(index) {
   const frame = frames[index];
   current = frame;
+  opened = null;
   history.replaceState(null, "", `#${index}`);
   note = "";
   show();
   $("status").textContent = "opening …";
   try {
+    if (frame.state === "new") await all_saved();
     const [picture] = await Promise.all([load_picture(frame), frame.state === "new" || !frame.points ? load(frame) : null]);
     if (current !== frame) return;
-    if (!frame.unsaved && !frame.saving) frame.done = frame.state === "done";
+    opened = frame;
     const before = size;
     size = [picture.naturalWidth, picture.naturalHeight];
     $("image").setAttribute("href", picture.src);
@@ -489,7 +499,7 @@ function listen() {
   addEventListener("beforeunload", (event) => { if (offline && frames.some((f) => f.unsaved)) event.preventDefault(); });
   const buttons = { undo, redo, afresh, fit, done: () => set_done(true), reopen: () => set_done(false),
     larger: () => zoom(1.25), smaller: () => zoom(0.8), shown: draw };
-  for (const [id, act] of Object.entries(buttons)) $(id).addEventListener("click", () => current?.points && act());
+  for (const [id, act] of Object.entries(buttons)) $(id).addEventListener("click", () => ready() && act());
 }
 
 async function main() {
@@ -497,7 +507,7 @@ async function main() {
   scheme = project.scheme;
   frames = project.frames.map((frame, index) => ({
     ...frame, index, ...states[index], done: states[index].state === "done",
-    points: null, edits: 0, unsaved: false, saving: false, past: [], future: [],
+    points: null, edits: 0, unsaved: false, saving: false, settled: null, sent: [], past: [], future: [],
   }));
   for (const frame of frames) Object.assign(frame, JSON.parse(sessionStorage.getItem(history_name(frame)) ?? "{}"));
   document.title = `${project.manifest} – talkgraph annotate`;

@@ -47,8 +47,8 @@ TEST_F(ProjectTest, ManifestsInOneLineAndWithoutAscii) {
 
 TEST_F(ProjectTest, OffersTrainingClipsWithoutLandmarksOfTheirOwn) {
   write("own.csv", "1,2\n");
-  write_manifest(
-      {clip_json("one"), clip_json("two", R"(, "split": "test")"), clip_json("three", R"(, "landmarks": "own.csv")")});
+  write_manifest({clip_json("one"), clip_json("two", R"(, "split": "test")"),
+                  R"({"id": "three", "video": "one", "audio": "a.wav", "landmarks": "own.csv"})"});
   const auto project = open({.frames = 30});
   ASSERT_EQ(project->frames().size(), static_cast<std::size_t>(pictures));
   for (std::size_t f = 0; f < project->frames().size(); ++f) EXPECT_EQ(project->clip(f), "one");
