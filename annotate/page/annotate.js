@@ -5,7 +5,7 @@ const $ = (id) => document.getElementById(id);
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const steps_kept = 100;
 
-let scheme, frames = [], current = null, opened = null, selected = 0;  // opened: the frame whose picture is shown
+let manifest, scheme, frames = [], current = null, opened = null, selected = 0;  // opened: the frame whose picture is shown
 let view = { scale: 1, x: 0, y: 0 }, size = null;  // a point p is drawn at scale · p + (x, y)
 let drag = null;
 let offline = false, note = "";
@@ -124,7 +124,7 @@ async function watch() {
 
 // ---------------------------------------------------------------- what a person changes
 
-const history_name = (frame) => `${frame.clip} ${frame.number}`;
+const history_name = (frame) => [manifest, scheme.name, frame.clip, frame.number].join("\n");
 
 function keep_step(frame) {
   frame.past.push(frame.points);
@@ -504,13 +504,13 @@ function listen() {
 
 async function main() {
   const [project, states] = await Promise.all([get("api/project"), get("api/frames")]);
-  scheme = project.scheme;
+  ({ manifest, scheme } = project);
   frames = project.frames.map((frame, index) => ({
     ...frame, index, ...states[index], done: states[index].state === "done",
     points: null, edits: 0, unsaved: false, saving: false, settled: null, sent: [], past: [], future: [],
   }));
   for (const frame of frames) Object.assign(frame, JSON.parse(sessionStorage.getItem(history_name(frame)) ?? "{}"));
-  document.title = `${project.manifest} – talkgraph annotate`;
+  document.title = `${manifest} – talkgraph annotate`;
   make_marks();
   make_list();
   listen();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "graph/output_file.h"
@@ -37,15 +38,18 @@ std::string pts_text(const Shape& shape) {
 }
 
 Artifact WriteLandmarks::operator()(const LandmarkTrack& landmarks, Context& context) const {
-  if (landmarks.frames.empty()) throw std::invalid_argument("the clip has no frame to write landmarks of");
+  const auto& frames = landmarks.frames;
+  const auto has_landmarks = [](const Shape& shape) { return !shape.array().isNaN().all(); };
+  if (std::none_of(frames.begin(), frames.end(), has_landmarks))
+    throw std::invalid_argument("the clip has no frame to write landmarks of");
   const Artifact artifact = item_file(context, folder, "", "landmarks");
-  for (std::size_t t = 0; t < landmarks.frames.size(); ++t)
-    write_pts(numbered(context.file(artifact.path), t, ".pts"), landmarks.frames[t]);
+  for (std::size_t t = 0; t < frames.size(); ++t)
+    if (has_landmarks(frames[t])) write_pts(numbered(context.file(artifact.path), t, ".pts"), frames[t]);
   return artifact;
 }
 
 void describe(Description<WriteLandmarks>& d) {
-  d.type("write.landmarks").summary("writes landmarks as .pts files, one a frame").sink();
+  d.type("write.landmarks").summary("writes landmarks as .pts files, one a frame that has some").sink();
   d.input("landmarks", "of every frame").output("file", "the folder of a clip");
   d.param("folder", &WriteLandmarks::folder).doc("below the run folder");
 }

@@ -11,8 +11,9 @@ namespace talkgraph {
 /// left pixel is (1, 1). Throws std::invalid_argument if a point is missing (NaN): the format cannot say so.
 std::string pts_text(const Shape& shape);
 
-/// Writes the landmarks of each clip as FOLDER/ITEM/000000.pts, one a frame, which a corpus manifest reads back.
-/// Errors: a file cannot be written, a point is missing, a clip without a frame.
+/// Writes the landmarks of each clip as FOLDER/ITEM/000000.pts, one a frame, which a corpus manifest reads back;
+/// a frame without landmarks gets none. Errors: a file cannot be written, some points of a frame are missing, a clip
+/// without a frame that has landmarks.
 struct WriteLandmarks {
   std::string folder = "landmarks";
 

@@ -46,6 +46,15 @@ TEST_F(WritesLandmarks, OneFileAFrame) {
   EXPECT_EQ(folder.read("landmarks/s1/a/000002.pts"), kText);
 }
 
+TEST_F(WritesLandmarks, NoFileOfAFrameWithoutLandmarks) {
+  const Shape none = Shape::Constant(3, 2, NAN);
+  WriteLandmarks{}({{none, points, none}, 25, ""}, context);
+  EXPECT_EQ(folder.read("landmarks/landmarks/000001.pts"), kText);
+  for (const char* file : {"000000.pts", "000002.pts"})
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "landmarks/landmarks" / file)) << file;
+  EXPECT_THAT(complaint(WriteLandmarks{}, LandmarkTrack{{none, none}, 25, ""}), HasSubstr("no frame"));
+}
+
 TEST_F(WritesLandmarks, OnlyWhatTheFormatCanSay) {
   EXPECT_THAT(complaint(WriteLandmarks{}, LandmarkTrack{}), HasSubstr("no frame"));
   points(1, 0) = NAN;
