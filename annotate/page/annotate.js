@@ -174,7 +174,7 @@ async function afresh() {
 function set_done(done) {
   const outside = current.points.findIndex(([x, y]) => x < 0 || y < 0 || x > size[0] - 1 || y > size[1] - 1);
   if (done && outside >= 0) {
-    select(outside);
+    selected = outside;
     note = `point ${outside} lies outside the picture: nothing could be learnt from it`;
     return show();
   }
@@ -272,7 +272,7 @@ function pointer_down(event) {
   if (point < 0) {
     drag = { pan: [event.clientX - view.x, event.clientY - view.y] };
   } else {
-    select(point);
+    selected = point;
     drag = { from: place(event), set: moved_with(point), points: current.points };
   }
   event.preventDefault();
@@ -333,7 +333,7 @@ function wheel(event) {
 const choose_mode = (value) => { document.querySelector(`input[value=${value}]`).checked = true; };
 const toggle = (id) => $(id).click();
 const go = (by) => open_frame((current.index + by + frames.length) % frames.length);
-const pick = (by) => { select((selected + by + current.points.length) % current.points.length); show(); };
+const pick = (by) => { selected = (selected + by + scheme.points) % scheme.points; draw(); };
 
 const keys = {
   Enter: () => set_done(true), PageDown: () => go(1), PageUp: () => go(-1), Escape: give_up_drag,
@@ -389,7 +389,7 @@ function make_list() {
 /** The picture with its points: what changes while dragging. */
 function draw() {
   $("view").setAttribute("transform", `translate(${view.x} ${view.y}) scale(${view.scale})`);
-  const points = drag?.points ?? current?.points;
+  const points = drag?.points ?? (ready() ? current.points : null);
   $("marks").setAttribute("visibility", points && $("shown").checked ? "visible" : "hidden");
   if (!points) return;
   const circles = $("points").children;
@@ -418,6 +418,7 @@ function show_status() {
   const unsaved = frames.filter((frame) => frame.unsaved || frame.saving).length;
   let text = current?.state === "new" ? beginnings[current.by] ?? "" : current?.done ? "done, saved" : "draft, saved";
   if (unsaved) text = "saving …";
+  if (opened !== current) text = "opening …";
   if (note) text = note;
   if (offline) text = `the server does not answer${unsaved ? "; what is not saved waits here: start it again" : ""}`;
   $("status").textContent = text;
@@ -440,10 +441,6 @@ function show() {
   draw();
 }
 
-function select(point) {
-  selected = point;
-}
-
 // ---------------------------------------------------------------- frames
 
 function load_picture(frame) {
@@ -455,8 +452,25 @@ function load_picture(frame) {
   });
 }
 
+async function show_picture(frame) {
+  const picture = await load_picture(frame);
+  if (current !== frame) return;
+  const before = size;
+  size = [picture.naturalWidth, picture.naturalHeight];
+  $("image").setAttribute("href", picture.src);
+  $("image").setAttribute("width", size[0]);
+  $("image").setAttribute("height", size[1]);
+  if (!same(before, size)) fit();
+}
+
 /** What the model is built of is saved first, unless the server does not answer. */
 const all_saved = () => Promise.race([Promise.all(frames.map((frame) => frame.settled)), sleep(3000)]);
+
+/** A frame that nobody has begun begins with the newest model. */
+async function load_points(frame) {
+  if (frame.state === "new") await all_saved();
+  if (frame.state === "new" || !frame.points) await load(frame);
+}
 
 async function open_frame(index) {
   const frame = frames[index];
@@ -465,20 +479,12 @@ async function open_frame(index) {
   history.replaceState(null, "", `#${index}`);
   note = "";
   show();
-  $("status").textContent = "opening …";
   try {
-    if (frame.state === "new") await all_saved();
-    const [picture] = await Promise.all([load_picture(frame), frame.state === "new" || !frame.points ? load(frame) : null]);
+    await Promise.all([show_picture(frame), load_points(frame)]);
     if (current !== frame) return;
     opened = frame;
-    const before = size;
-    size = [picture.naturalWidth, picture.naturalHeight];
-    $("image").setAttribute("href", picture.src);
-    $("image").setAttribute("width", size[0]);
-    $("image").setAttribute("height", size[1]);
-    if (!same(before, size)) fit();
   } catch (error) {
-    note = error instanceof TypeError ? "the server does not answer" : error.message;
+    if (current === frame) note = error instanceof TypeError ? "the server does not answer" : error.message;
   }
   frame.item.scrollIntoView({ block: "nearest" });
   show();
