@@ -41,24 +41,10 @@ void tell_manifest(const std::string& manifest, const Place& before, const Json&
   write_file(manifest, text);
 }
 
-/// As landmarks carry it: the name of a built-in scheme, or the text of a file.
-std::string scheme_text(const std::string& scheme, Diagnostics& diagnostics) {
-  if (!scheme.ends_with(".json")) return scheme;
-  const auto source = std::make_shared<SourceText>(SourceText{scheme, read_text_file(scheme)});
-  return parse_scheme(source, diagnostics) ? parse_json(source, diagnostics)->plain().dump() : "";
-}
-
-PointScheme known_scheme(const std::string& scheme) {
-  if (auto found = find_scheme(scheme)) return *std::move(found);
-  const auto known = built_in_schemes();
-  throw std::invalid_argument(fmt::format("there is no point scheme \"{}\"{}; built in are {}, others are .json files",
-                                          scheme, did_you_mean(scheme, known), fmt::join(known, ", ")));
-}
-
 /// The folder of annotations as the manifest has it; it is told where it says nothing.
 LandmarkFolder landmark_folder(const std::string& manifest, const std::string& scheme, Diagnostics& diagnostics) {
   auto folder = read_landmark_folder(manifest, diagnostics);
-  const auto wanted = scheme_text(scheme, diagnostics);
+  const auto wanted = scheme.ends_with(".json") ? scheme_text(scheme, diagnostics) : scheme;
   if (!diagnostics.ok()) return folder;
   if (!folder.path.empty()) {
     if (folder.scheme.empty()) folder.scheme = "ibug68";
@@ -67,7 +53,7 @@ LandmarkFolder landmark_folder(const std::string& manifest, const std::string& s
     return folder;
   }
   folder.scheme = wanted.empty() ? "ibug68" : wanted;
-  known_scheme(folder.scheme);
+  if (!find_scheme(folder.scheme)) throw std::invalid_argument(unknown_scheme(folder.scheme));
   const auto home = fs::absolute(manifest).parent_path();
   constexpr auto name = "annotated";
   const auto in_manifest =
@@ -117,7 +103,7 @@ std::unique_ptr<Project> Project::open(const std::string& manifest, const Projec
         manifest +
         ": there is no clip to annotate: none of the split \"train\" has a \"video\" and no landmarks of its own");
   return std::unique_ptr<Project>(
-      new Project(manifest, std::move(clips), known_scheme(folder.scheme), folder.scheme, folder.path, options));
+      new Project(manifest, std::move(clips), *find_scheme(folder.scheme), folder.scheme, folder.path, options));
 }
 
 FolderLock::FolderLock(const fs::path& folder) {

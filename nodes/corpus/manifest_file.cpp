@@ -100,12 +100,6 @@ void read_visual(const Members& clip, ManifestClip& out) {
   if (!out.visual_rate) visual.error("\"visual\" needs a \"rate\", frames per second");
 }
 
-/// A scheme file in one line, as landmarks carry it.
-std::string scheme_text(const std::string& path, Diagnostics& diagnostics) {
-  const auto source = std::make_shared<SourceText>(SourceText{path, read_text_file(path)});
-  return parse_scheme(source, diagnostics) ? parse_json(source, diagnostics)->plain().dump() : "";
-}
-
 /// The name of a built-in scheme, or the text of the scheme file named.
 void read_scheme(const Members& landmarks, const fs::path& folder, std::string& scheme, Diagnostics& diagnostics) {
   landmarks.text("scheme", scheme);
@@ -114,11 +108,8 @@ void read_scheme(const Members& landmarks, const fs::path& folder, std::string& 
     std::string path;
     landmarks.path("scheme", path, {}, false);
     scheme = fs::is_regular_file(folder / scheme) ? scheme_text(path, diagnostics) : "";
-  } else if (const auto known = built_in_schemes(); std::find(known.begin(), known.end(), scheme) == known.end()) {
-    diagnostics.error(
-        landmarks.at("scheme").place,
-        fmt::format("there is no point scheme \"{}\"{}; built in are {}, others are named by their .json file", scheme,
-                    did_you_mean(scheme, known), fmt::join(known, ", ")));
+  } else if (!find_scheme(scheme)) {
+    diagnostics.error(landmarks.at("scheme").place, unknown_scheme(scheme));
   }
 }
 
@@ -186,7 +177,9 @@ LandmarkFolder read_landmark_folder(const Members& manifest, const fs::path& fol
   const Members landmarks = manifest.within("landmarks", {"folder", "scheme"});
   landmarks.text("folder", out.path);
   if (out.path.empty()) return landmarks.error("\"landmarks\" needs a \"folder\""), out;
-  out.path = (folder / out.path).lexically_normal().string();
+  fs::path path = (folder / out.path).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  out.path = path.string();
   read_scheme(landmarks, folder, out.scheme, diagnostics);
   return out;
 }
@@ -253,6 +246,11 @@ LandmarkFolder read_landmark_folder(const std::string& file, Diagnostics& diagno
   const auto* member = json->find(manifest.has("landmarks") ? "landmarks" : "clips");
   if (member) found.place = member->key_place;
   return found;
+}
+
+std::string scheme_text(const std::string& path, Diagnostics& diagnostics) {
+  const auto source = std::make_shared<SourceText>(SourceText{path, read_text_file(path)});
+  return parse_scheme(source, diagnostics) ? parse_json(source, diagnostics)->plain().dump() : "";
 }
 
 }  // namespace talkgraph

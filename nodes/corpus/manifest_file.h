@@ -39,4 +39,7 @@ std::vector<ManifestClip> read_manifest(const std::string& file, Diagnostics& di
 /// What the manifest says beside its clips; no path if it says nothing. Errors as above.
 LandmarkFolder read_landmark_folder(const std::string& file, Diagnostics& diagnostics);
 
+/// A scheme file in one line, as landmarks carry it. Errors as above.
+std::string scheme_text(const std::string& file, Diagnostics& diagnostics);
+
 }  // namespace talkgraph

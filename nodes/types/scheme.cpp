@@ -205,6 +205,12 @@ std::vector<std::string> built_in_schemes() {
   return names;
 }
 
+std::string unknown_scheme(const std::string& name) {
+  const auto known = built_in_schemes();
+  return fmt::format("there is no point scheme \"{}\"{}; built in are {}, others are named by their .json file", name,
+                     did_you_mean(name, known), fmt::join(known, ", "));
+}
+
 std::optional<PointScheme> find_scheme(const std::string& scheme) {
   std::string text = scheme;
   for (const auto& known : built_in)
@@ -217,15 +223,12 @@ std::optional<PointScheme> find_scheme(const std::string& scheme) {
 }
 
 PointScheme scheme_of(const std::string& scheme, Eigen::Index points) {
-  const auto known = built_in_schemes();
   if (scheme.empty() && points != 68)
     throw std::runtime_error(
         fmt::format("nothing says which of {} landmarks is which: name their scheme ({}, or a file) in the manifest",
-                    points, fmt::join(known, ", ")));
+                    points, fmt::join(built_in_schemes(), ", ")));
   auto found = find_scheme(scheme.empty() ? "ibug68" : scheme);
-  if (!found)
-    throw std::runtime_error(fmt::format("there is no point scheme \"{}\"{}; built in are {}", scheme,
-                                         did_you_mean(scheme, known), fmt::join(known, ", ")));
+  if (!found) throw std::runtime_error(unknown_scheme(scheme));
   if (found->points() != points)
     throw std::runtime_error(
         fmt::format("the point scheme \"{}\" has {} points, the landmarks {}", found->name, found->points(), points));

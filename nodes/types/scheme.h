@@ -41,6 +41,9 @@ std::optional<PointScheme> parse_scheme(std::shared_ptr<const SourceText> source
 /// Names of the schemes that are built in: the files of the folder schemes.
 std::vector<std::string> built_in_schemes();
 
+/// What to say of a name that no scheme has.
+std::string unknown_scheme(const std::string& name);
+
 /// What landmarks say of their scheme: the name of a built-in one, or the text of a scheme file.
 /// Nothing is given for a name that is unknown.
 std::optional<PointScheme> find_scheme(const std::string& scheme);

@@ -56,6 +56,23 @@ TEST_F(ProjectTest, OffersTrainingClipsWithoutLandmarksOfTheirOwn) {
   EXPECT_THAT(error({.scheme = path("synthetic.json")}), HasSubstr("there is no clip to annotate"));
 }
 
+TEST_F(ProjectTest, TheFolderIsTheUsersChoice) {
+  write("m.json",
+        fmt::format(
+            R"({{"rate": 25, "landmarks": {{"folder": "my/marks/", "scheme": "synthetic.json"}}, "clips": [{}]}})",
+            clip_json("one")));
+  manifest_ = path("m.json");
+  for (int run = 0; run < 2; ++run) {
+    Diagnostics diagnostics;
+    const auto project = Project::open(manifest_, {.frames = 2}, diagnostics);
+    ASSERT_TRUE(project);
+    ASSERT_EQ(project->frames().size(), 2u) << "its own annotations do not count as the clip's";
+    if (run == 0) finish(*project, 0);
+    EXPECT_TRUE(project->annotation(0));
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "my/marks/one"));
+}
+
 TEST_F(ProjectTest, WhatIsWrongIsTold) {
   EXPECT_THAT(error({.scheme = "ibug"}), HasSubstr("did you mean \"ibug68\"?"));
   write("bad.json", "{}");

@@ -203,7 +203,7 @@ TEST_F(ManifestTest, LandmarksOfSomeFramesInAFolder) {
   write("marked/one/000001.pts", "{\n5 6\n7 8\n9 9\n}\n");
   write("marked/three/000001.pts", "{\n5 6\n7 8\n9 9\n}\n");
   write("marked/four/000001.draft", "{\n5 6\n7 8\n9 9\n}\n");
-  const auto clips = all(node(R"({"rate": 25, "landmarks": {"folder": "marked", "scheme": "tiny.json"}, "clips": [
+  const auto clips = all(node(R"({"rate": 25, "landmarks": {"folder": "x/../marked/", "scheme": "tiny.json"}, "clips": [
     {"id": "one", "video": "frames", "audio": "a.wav"}, {"id": "two", "video": "frames", "audio": "a.wav"},
     {"id": "three", "video": "frames", "audio": "a.wav", "landmarks": "own.csv"},
     {"id": "four", "video": "frames", "audio": "a.wav"}, {"id": "five", "audio": "a.wav"}]})")());
