@@ -5,7 +5,8 @@ const $ = (id) => document.getElementById(id);
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const steps_kept = 100;
 
-let manifest, scheme, frames = [], current = null, opened = null, selected = 0;  // opened: the frame whose picture is shown
+let manifest, scheme, frames = [];
+let current = null, opened = null, selected = 0;  // opened: the frame whose picture is shown
 let view = { scale: 1, x: 0, y: 0 }, size = null;  // a point p is drawn at scale · p + (x, y)
 let drag = null;
 let offline = false, note = "";
@@ -85,7 +86,7 @@ async function send(frame) {
   show();
 }
 
-/** The server has another state than the one that was changed: what was sent before it was killed, or another's work. */
+/** The server has another state than was changed: what was sent before it was killed, or another's work. */
 function meet_other_state(frame, answer) {
   frame.state = answer.state;
   frame.tag = answer.tag;
@@ -284,9 +285,9 @@ function pointer_move(event) {
     view.x = event.clientX - drag.pan[0];
     view.y = event.clientY - drag.pan[1];
   } else {
-    const to = place(event);
-    const move = event.shiftKey ? turn(current.points, drag.set, drag.from, to) : shift(to[0] - drag.from[0], to[1] - drag.from[1]);
-    drag.points = moved(current.points, drag.set, move);
+    const { from, set } = drag, to = place(event);
+    const move = event.shiftKey ? turn(current.points, set, from, to) : shift(to[0] - from[0], to[1] - from[1]);
+    drag.points = moved(current.points, set, move);
   }
   draw();
 }
@@ -502,7 +503,9 @@ function listen() {
   addEventListener("resize", draw);
   // Keys go to the picture again once a button has been clicked.
   addEventListener("click", (event) => { if (event.detail > 0) picture.focus(); });
-  addEventListener("beforeunload", (event) => { if (offline && frames.some((f) => f.unsaved)) event.preventDefault(); });
+  addEventListener("beforeunload", (event) => {
+    if (offline && frames.some((frame) => frame.unsaved)) event.preventDefault();
+  });
   const buttons = { undo, redo, afresh, fit, done: () => set_done(true), reopen: () => set_done(false),
     larger: () => zoom(1.25), smaller: () => zoom(0.8), shown: draw };
   for (const [id, act] of Object.entries(buttons)) $(id).addEventListener("click", () => ready() && act());

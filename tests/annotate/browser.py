@@ -83,8 +83,10 @@ class Browser:
         self.session = ""
         wait_for(self.answers, "chromedriver")
         arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
-                     "--disable-background-networking", f"--user-data-dir={profile}", f"--window-size={size[0]},{size[1]}"]
-        options = {"goog:chromeOptions": {"binary": chromium, "args": arguments}, "goog:loggingPrefs": {"browser": "ALL"}}
+                     "--disable-background-networking", f"--user-data-dir={profile}",
+                     f"--window-size={size[0]},{size[1]}"]
+        options = {"goog:chromeOptions": {"binary": chromium, "args": arguments},
+                   "goog:loggingPrefs": {"browser": "ALL"}}
         made = self.call("POST", "/session", {"capabilities": {"alwaysMatch": options}})
         self.session = f"/session/{made['sessionId']}"
 
@@ -156,11 +158,12 @@ class Browser:
         middle = [(a + b) / 2 for a, b in zip(start, to)]
         mouse = [move(start), {"type": "pointerDown", "button": 0}, move(middle), move(to),
                  {"type": "pointerUp", "button": 0}]
-        wait = [{"type": "pause"}] * (len(mouse) - 2)
-        code = KEYS.get(modifier)
-        keys = [{"type": "keyDown", "value": code}, *wait, {"type": "pause"}, {"type": "keyUp", "value": code}] if code else []
-        self.actions({"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": mouse},
-                     *([{"type": "key", "id": "keys", "actions": keys}] if code else []))
+        sources = [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": mouse}]
+        if modifier:
+            held = [{"type": "pause"}] * (len(mouse) - 1)
+            keys = [{"type": "keyDown", "value": KEYS[modifier]}, *held, {"type": "keyUp", "value": KEYS[modifier]}]
+            sources.append({"type": "key", "id": "keys", "actions": keys})
+        self.actions(*sources)
 
     def wheel(self, place, amount):
         self.actions({"type": "wheel", "id": "wheel", "actions": [

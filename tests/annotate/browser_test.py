@@ -1,4 +1,4 @@
-"""The page of talkgraph annotate in a real browser: browser_test.py path/to/talkgraph [folder for pictures of the page]"""
+"""The page of talkgraph annotate in a real browser: browser_test.py path/to/talkgraph [folder for pictures of it]"""
 
 import json
 import math
@@ -47,7 +47,8 @@ def picture(frame):
             rows += bytes((r, g, b))
     chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     head = struct.pack(">IIBBBBB", SIZE, SIZE, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(bytes(rows))) + chunk(b"IEND", b"")
+    data = zlib.compress(bytes(rows))
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", data) + chunk(b"IEND", b"")
 
 
 def make_corpus(folder):
@@ -88,7 +89,8 @@ class AnnotateTest(unittest.TestCase):
         self.ready()
 
     def ready(self):
-        wait_for(lambda: self.browser.run("return typeof current !== 'undefined' && !!current?.points && opened === current"), "the page")
+        opened = "return typeof current !== 'undefined' && !!current?.points && opened === current"
+        wait_for(lambda: self.browser.run(opened), "the page")
         wait_for(lambda: not self.status().startswith("opening"), "a frame")
 
     # What the page shows.
@@ -102,7 +104,8 @@ class AnnotateTest(unittest.TestCase):
 
     def place(self, point):
         """Of a point in the window."""
-        return self.browser.run("const b = document.querySelectorAll('#points circle')[arguments[0]].getBoundingClientRect();"
+        return self.browser.run("const circle = document.querySelectorAll('#points circle')[arguments[0]];"
+                                "const b = circle.getBoundingClientRect();"
                                 "return [b.x + b.width / 2, b.y + b.height / 2]", point)
 
     def scale(self):
@@ -215,7 +218,8 @@ class AnnotateTest(unittest.TestCase):
         self.browser.keys("0")
         self.assertAlmostEqual(self.scale(), before, 3)
         self.browser.keys("h")
-        self.assertEqual(self.browser.run("return document.getElementById('marks').getAttribute('visibility')"), "hidden")
+        visibility = "return document.getElementById('marks').getAttribute('visibility')"
+        self.assertEqual(self.browser.run(visibility), "hidden")
         self.browser.keys("h")
         self.browser.keys("PageDown")
         wait_for(lambda: self.browser.run("return current.index") == 1, "the next frame")

@@ -1,5 +1,5 @@
-"""How far a person's work goes: the built-in speaker's clips, whose landmarks are known, are annotated with some noise through the
-page's interface, as docs/annotate.md describes it, and a talking face is trained on them.
+"""How far a person's work goes: the built-in speaker's clips, whose landmarks are known, are annotated with some noise
+through the page's interface, as docs/annotate.md describes it, and a talking face is trained on them.
 
 new_speaker.py path/to/talkgraph folder [--frames 20] [--noise 0.7] [--train]
 """
@@ -46,7 +46,7 @@ def record(program, folder):
 
 
 def measure(server, frames, truth, wanted):
-    """Of the frames that are not annotated, how far their points to begin with are from the truth; and the time taken."""
+    """Of frames that are not annotated, how far their points to begin with are from the truth; and the time taken."""
     errors, lips, by, start = [], [], set(), time.monotonic()
     for f in wanted:
         begun = server.get(f"api/frames/{f}")
@@ -71,21 +71,23 @@ def main():
     try:
         frames = server.get("api/project")["frames"]
         draw = random.Random(1)
-        print("| frames done | begins with | all points: median | worst | lips: median | worst | s a frame |\n|---|---|---|---|---|---|---|")
+        print("| frames done | begins with | all points: median | worst | lips: median | worst | s a frame |")
+        print("|---|---|---|---|---|---|---|")
         for done in range(options.frames + 1):
             if done in (0, 1, 3, 5, 10, 15, 20):
                 errors, lips, by, seconds = measure(server, frames, truth, range(options.frames, len(frames)))
                 print(f"| {done} | {', '.join(sorted(by))} | {statistics.median(errors):.2f} px | {max(errors):.2f} px "
                       f"| {statistics.median(lips):.2f} px | {max(lips):.2f} px | {seconds:.2f} |", flush=True)
             if done < options.frames:
-                marked = [[x + draw.gauss(0, options.noise), y + draw.gauss(0, options.noise)] for x, y in truth(frames[done])]
+                slip = lambda: draw.gauss(0, options.noise)
+                marked = [[x + slip(), y + slip()] for x, y in truth(frames[done])]
                 server.put(done, marked, True, server.get("api/frames")[done]["tag"])
     finally:
         server.stop()
     if options.train:
         pipeline = pathlib.Path(__file__).parents[2] / "pipelines" / "own.json"
-        subprocess.run([options.program, "run", pipeline, "--set", f"manifest={manifest}", "-o", options.folder / "trained",
-                        "--overwrite"], check=True)
+        subprocess.run([options.program, "run", pipeline, "--set", f"manifest={manifest}",
+                        "-o", options.folder / "trained", "--overwrite"], check=True)
 
 
 if __name__ == "__main__":
