@@ -11,24 +11,21 @@
 #include "nodes/media/check_video.h"
 #include "nodes/phones/pronunciation.h"
 #include "nodes/phones/words.h"
+#include "nodes/types/scheme.h"
 #include "nodes/types/visemes.h"
 
 namespace talkgraph {
 namespace {
 
-struct InnerLips {
-  std::string_view scheme;
-  int upper, lower;
-};
-constexpr InnerLips inner_lips[] = {{"ibug68", 62, 66}, {"demnow69", 62, 66}, {"lips56", 50, 54}};
-
-const InnerLips* lips_of(const LandmarkTrack& landmarks) {
-  for (const auto& lips : inner_lips)
-    if (lips.scheme == landmarks.scheme) return &lips;
-  return nullptr;
-}
-
 bool is_whole(const Shape& shape) { return shape.rows() > 0 && shape.allFinite(); }
+
+/// Whether the middles of the inner lips are known in every frame.
+bool shows_lips(const LandmarkTrack& landmarks) {
+  const auto& frames = landmarks.frames;
+  if (frames.empty() || !std::all_of(frames.begin(), frames.end(), is_whole)) return false;
+  const auto scheme = find_scheme(landmarks.scheme);
+  return scheme && scheme->names.contains("inner_top") && scheme->names.contains("inner_bottom");
+}
 
 void inspect_landmarks(const LandmarkTrack& landmarks, Scores& out) {
   double gaps = 0;
@@ -89,9 +86,8 @@ Eigen::VectorXd lags(const Audio& audio, const Video& video, const LandmarkTrack
   const Eigen::VectorXd moved = motion(video, landmarks, context);
   const Eigen::VectorXd envelope = sound_envelope(audio, video.source->rate(), moved.size());
   const Eigen::VectorXd by_motion = lag_correlations(moved, envelope, max_lag);
-  const auto* lips = landmarks ? lips_of(*landmarks) : nullptr;
-  if (!lips || !std::all_of(landmarks->frames.begin(), landmarks->frames.end(), is_whole)) return by_motion;
-  const Eigen::VectorXd gap = point_distance(*landmarks, lips->upper, lips->lower), rise = change(envelope);
+  if (!landmarks || !shows_lips(*landmarks)) return by_motion;
+  const Eigen::VectorXd gap = point_distance(*landmarks, "inner_top", "inner_bottom"), rise = change(envelope);
   return 0.5 * by_motion + 0.25 * lag_correlations(change(gap), rise, max_lag) +
          0.25 * lag_correlations(moved, rise.cwiseAbs(), max_lag);
 }

@@ -93,17 +93,17 @@ std::vector<face::Moment> record_face(const PhoneTrack& phones, const Delivery& 
   return moments;
 }
 
-std::vector<face::Bound> points_of(PointScheme scheme) {
+std::vector<face::Bound> points_of(SpeakerPoints scheme) {
   auto points = face::landmarks();
-  if (scheme == PointScheme::lips56) points.erase(points.begin() + 36, points.begin() + 48);
-  if (scheme == PointScheme::demnow69) points.push_back(face::bind({face::centre_x, 88}, face::Part::brow));
+  if (scheme == SpeakerPoints::face56) points.erase(points.begin() + 36, points.begin() + 48);
+  if (scheme == SpeakerPoints::ibug69) points.push_back(face::bind({face::centre_x, 88}, face::Part::brow));
   return points;
 }
 
-LandmarkTrack mark(const std::vector<face::Moment>& moments, Rational fps, int height, PointScheme scheme) {
+LandmarkTrack mark(const std::vector<face::Moment>& moments, Rational fps, int height, SpeakerPoints scheme) {
   LandmarkTrack track;
   track.rate = fps;
-  for (const auto& entry : enum_names<PointScheme>.entries)
+  for (const auto& entry : enum_names<SpeakerPoints>.entries)
     if (entry.value == scheme) track.scheme = entry.name;
   const auto points = points_of(scheme);
   for (const auto& m : moments) track.frames.push_back(face::picture_landmarks(points, m, height));

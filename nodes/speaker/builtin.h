@@ -5,13 +5,12 @@
 
 namespace talkgraph {
 
-/// Which landmarks come with the pictures: the 68 of iBUG; the 56 of them that
-/// lie on no eye (jaw, brows, nose, lips), as the source marked its LIPS
-/// corpus; or all 68 and the middle of the forehead, 69 as for DEMNOW.
-enum class PointScheme { ibug68, lips56, demnow69 };
+/// The point scheme of the landmarks that come with the pictures (docs/schemes.md); the source marked 56
+/// points for LIPS and 69 for DEMNOW.
+enum class SpeakerPoints { ibug68, face56, ibug69 };
 template <>
-inline constexpr EnumNames<PointScheme, 3> enum_names<PointScheme>{
-    {{PointScheme::ibug68, "ibug68"}, {PointScheme::lips56, "lips56"}, {PointScheme::demnow69, "demnow69"}}};
+inline constexpr EnumNames<SpeakerPoints, 3> enum_names<SpeakerPoints>{
+    {{SpeakerPoints::ibug68, "ibug68"}, {SpeakerPoints::face56, "face56"}, {SpeakerPoints::ibug69, "ibug69"}}};
 
 /// A speaker who comes with the program: sentences spoken by espeak-ng, a face
 /// whose articulators follow the phones with coarticulation, and head motion,
@@ -29,7 +28,7 @@ struct BuiltinSpeaker {
   std::int64_t height = 288;  ///< of the pictures, pixels; even
   double sample_rate = 22050;
   std::int64_t seed = 1;
-  PointScheme points = PointScheme::ibug68;
+  SpeakerPoints points = SpeakerPoints::ibug68;
 
   Stream<Recording> operator()() const;
 };

@@ -237,12 +237,12 @@ TEST(BuiltinSpeaker, TellsWhatMovedTheFace) {
 TEST(BuiltinSpeaker, IsMarkedInEveryScheme) {
   auto node = few(2);
   const auto usual = *all_of(node)[0].value.landmarks;
-  node.points = PointScheme::lips56;
+  node.points = SpeakerPoints::face56;
   const auto lips = *all_of(node)[0].value.landmarks;
-  node.points = PointScheme::demnow69;
+  node.points = SpeakerPoints::ibug69;
   const auto demnow = *all_of(node)[0].value.landmarks;
-  EXPECT_EQ(lips.scheme, "lips56");
-  EXPECT_EQ(demnow.scheme, "demnow69");
+  EXPECT_EQ(lips.scheme, "face56");
+  EXPECT_EQ(demnow.scheme, "ibug69");
   for (std::size_t t = 0; t < usual.frames.size(); ++t) {
     ASSERT_EQ(lips.frames[t].rows(), 56);
     EXPECT_EQ(lips.frames[t].topRows(36), usual.frames[t].topRows(36));
