@@ -20,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* parts[] = {"transcript", "words", "phones", "landmarks"};
-constexpr double tolerance = 0.25;  ///< seconds that sound and picture may differ by, as in corpus.parts
+constexpr double tolerance = 0.25;       ///< seconds that sound and picture may differ by, as in corpus.parts
+constexpr double colour_tolerance = 30;  ///< grey levels that the mean of a colour may differ from most clips'
 
 double value(const Scores& scores, const std::string& name) {
   const auto at = scores.values.find(name);
@@ -82,9 +83,31 @@ double between_frames(const Lags& lags, int at) {
   return curve < 0 ? at + 0.5 * (before->second - after->second) / curve : at;
 }
 
+/// What most clips are like, where a single one may be otherwise.
+struct Usual {
+  double fps = 0;
+  std::map<std::string, double> colours;  ///< medians
+  Offset offset;
+};
+
+Usual usual_of(const std::vector<ClipFindings>& clips) {
+  Usual out;
+  if (const auto fps = census(clips, "fps"); !fps.empty()) out.fps = fps.front().first;
+  for (const char* colour : {"red", "green", "blue"}) {
+    std::vector<double> all;
+    for (const auto& clip : clips)
+      if (const double v = value(clip.findings, colour); !std::isnan(v)) all.push_back(v);
+    if (all.empty()) continue;
+    std::nth_element(all.begin(), all.begin() + std::ssize(all) / 2, all.end());
+    out.colours[colour] = all[all.size() / 2];
+  }
+  out.offset = mean_lags(clips);
+  return out;
+}
+
 std::string share(double count, double of, const char* what) { return fmt::format("{:g} of {:g} {}", count, of, what); }
 
-std::vector<std::string> problems_of(const ClipFindings& clip, double usual_fps, const Offset& offset) {
+std::vector<std::string> problems_of(const ClipFindings& clip, const Usual& usual) {
   std::vector<std::string> out;
   const auto get = [&](const char* name) { return value(clip.findings, name); };
   const double frames = get("frames");
@@ -95,19 +118,23 @@ std::vector<std::string> problems_of(const ClipFindings& clip, double usual_fps,
   if (std::abs(get("sound_seconds") - get("picture_seconds")) > tolerance)
     out.push_back(
         fmt::format("the sound lasts {:.2f} s, the picture {:.2f} s", get("sound_seconds"), get("picture_seconds")));
-  if (!std::isnan(get("fps")) && get("fps") != usual_fps)
-    out.push_back(fmt::format("{:.6g} frames a second, most clips have {:.6g}", get("fps"), usual_fps));
+  if (!std::isnan(get("fps")) && get("fps") != usual.fps)
+    out.push_back(fmt::format("{:.6g} frames a second, most clips have {:.6g}", get("fps"), usual.fps));
+  for (const auto& [colour, median] : usual.colours)
+    if (const double v = get(colour.c_str()); std::abs(v - median) > colour_tolerance)
+      out.push_back(
+          fmt::format("the picture's {} is {:.0f}, of most clips {:.0f}: are its colours right?", colour, v, median));
   if (std::abs(get("landmark_frames") - frames) > 2)
     out.push_back(fmt::format("landmarks of {:g} frames, the picture has {:g}", get("landmark_frames"), frames));
   if (get("landmark_gaps") > 0)
     out.push_back(share(get("landmark_gaps"), get("landmark_frames"), "frames lack landmarks"));
-  if (const auto lags = lags_of(clip); !lags.empty() && !offset.mean.empty()) {
-    const int usual = peak(offset.mean).first;
+  if (const auto lags = lags_of(clip); !lags.empty() && !usual.offset.mean.empty()) {
+    const int expected = peak(usual.offset.mean).first;
     const auto [lag, r] = peak(lags);
-    const bool clear = r >= 0.5 && lags.contains(usual) && r >= lags.at(usual) + 0.25;
-    if (std::abs(lag - usual) >= 4 && clear)
-      out.push_back(fmt::format("the picture seems to be {} frames {} against the other clips", std::abs(lag - usual),
-                                lag > usual ? "late" : "early"));
+    const bool clear = r >= 0.5 && lags.contains(expected) && r >= lags.at(expected) + 0.25;
+    if (std::abs(lag - expected) >= 4 && clear)
+      out.push_back(fmt::format("the picture seems to be {} frames {} against the other clips",
+                                std::abs(lag - expected), lag > expected ? "late" : "early"));
   }
   return out;
 }
@@ -230,8 +257,8 @@ std::vector<ClipFindings> findings_of(const RunResult& result) {
 
 Json corpus_report(const std::vector<ClipFindings>& clips) {
   Json report = {{"clips", Json::array()}, {"splits", Json::object()}, {"phones", Json::object()}};
-  const auto fps = census(clips, "fps");
-  const auto offset = mean_lags(clips);
+  const Usual usual = usual_of(clips);
+  const Offset& offset = usual.offset;
   std::map<std::string, double> phones;
   double sound = 0, picture = 0;
   for (const char* part : parts) report["lacking"][part] = Json::array();
@@ -244,7 +271,7 @@ Json corpus_report(const std::vector<ClipFindings>& clips) {
                                {"split", clip.split},
                                {"findings", findings},
                                {"lag", lags.empty() ? Json() : Json(peak(lags).first)},
-                               {"problems", problems_of(clip, fps.empty() ? 0 : fps.front().first, offset)}});
+                               {"problems", problems_of(clip, usual)}});
     report["splits"][clip.split] = report["splits"].value(clip.split, 0) + 1;
     for (const char* part : parts)
       if (!(value(clip.findings, part) > 0)) report["lacking"][part].push_back(clip.id);
@@ -258,7 +285,7 @@ Json corpus_report(const std::vector<ClipFindings>& clips) {
   }
   report["sound_seconds"] = sound;
   report["picture_seconds"] = picture;
-  report["fps"] = counts(fps);
+  report["fps"] = counts(census(clips, "fps"));
   report["sound_rate"] = counts(census(clips, "sound_rate"));
   report["missing_phones"] = Json::array();
   for (const auto& phone : phone_set(phones)) {
@@ -269,10 +296,8 @@ Json corpus_report(const std::vector<ClipFindings>& clips) {
   if (!offset.mean.empty()) {
     const auto [lag, r] = peak(offset.mean);
     const double frames = between_frames(offset.mean, lag);
-    report["offset"] = {{"frames", frames},
-                        {"milliseconds", 1000 * frames / fps.front().first},
-                        {"correlation", r},
-                        {"clips", offset.clips}};
+    report["offset"] = {
+        {"frames", frames}, {"milliseconds", 1000 * frames / usual.fps}, {"correlation", r}, {"clips", offset.clips}};
   }
   return report;
 }

@@ -54,22 +54,30 @@ cv::Rect lower_face(const LandmarkTrack* landmarks, cv::Size size) {
   return {size.width / 4, size.height / 2, std::max(1, size.width / 2), std::max(1, size.height / 2)};
 }
 
-/// Mean change of grey level since the frame before; the first frame has the second's.
-Eigen::VectorXd motion(const Video& video, const LandmarkTrack* landmarks, const Context& context) {
+struct Seen {
+  Eigen::VectorXd motion;  ///< mean change of grey level since the frame before; the first frame has the second's
+  cv::Scalar colour;       ///< mean of all frames
+};
+
+/// Reads the lower face through.
+Seen look_at(const Video& video, const LandmarkTrack* landmarks, const Context& context) {
   constexpr int width = 64;
   const cv::Rect region = lower_face(landmarks, video.source->size());
   std::vector<double> change;
+  cv::Scalar sum;
+  double count = 0;
   const auto reader = video.source->open();
   cv::Mat frame, grey, now, before;
-  while (reader->next(frame)) {
+  for (; reader->next(frame); ++count) {
     context.check_cancelled();
+    sum += cv::mean(frame(region));
     cv::cvtColor(frame(region), grey, cv::COLOR_BGR2GRAY);
     cv::resize(grey, now, {width, std::max(1, region.height * width / region.width)}, 0, 0, cv::INTER_AREA);
     if (!before.empty()) change.push_back(cv::norm(now, before, cv::NORM_L1) / static_cast<double>(now.total()));
     now.copyTo(before);
   }
   if (!change.empty()) change.insert(change.begin(), change.front());
-  return Eigen::Map<const Eigen::VectorXd>(change.data(), std::ssize(change));
+  return {Eigen::Map<const Eigen::VectorXd>(change.data(), std::ssize(change)), sum / std::max(1.0, count)};
 }
 
 /// Change since the frame before; of the first, none.
@@ -81,10 +89,9 @@ Eigen::VectorXd change(const Eigen::VectorXd& values) {
 
 /// Motion goes with the envelope. Where the lips are known, so does the change of the gap between them with the
 /// envelope's change, and motion with the size of that: half as telling each, but sharper in time.
-Eigen::VectorXd lags(const Audio& audio, const Video& video, const LandmarkTrack* landmarks, int max_lag,
-                     const Context& context) {
-  const Eigen::VectorXd moved = motion(video, landmarks, context);
-  const Eigen::VectorXd envelope = sound_envelope(audio, video.source->rate(), moved.size());
+Eigen::VectorXd lags(const Audio& audio, const Eigen::VectorXd& moved, Rational fps, const LandmarkTrack* landmarks,
+                     int max_lag) {
+  const Eigen::VectorXd envelope = sound_envelope(audio, fps, moved.size());
   const Eigen::VectorXd by_motion = lag_correlations(moved, envelope, max_lag);
   if (!landmarks || !shows_lips(*landmarks)) return by_motion;
   const Eigen::VectorXd gap = point_distance(*landmarks, "inner_top", "inner_bottom"), rise = change(envelope);
@@ -105,7 +112,12 @@ void inspect_video(const Recording& recording, const Audio& audio, int max_lag, 
     out.values["damaged_from"] = static_cast<double>(video.damaged.front());
     out.values["damaged_to"] = static_cast<double>(video.damaged.back());
   }
-  const auto found = lags(audio, video, recording.landmarks ? &*recording.landmarks : nullptr, max_lag, context);
+  const LandmarkTrack* landmarks = recording.landmarks ? &*recording.landmarks : nullptr;
+  const auto seen = look_at(video, landmarks, context);
+  out.values["blue"] = seen.colour[0];
+  out.values["green"] = seen.colour[1];
+  out.values["red"] = seen.colour[2];
+  const auto found = lags(audio, seen.motion, source.rate(), landmarks, max_lag);
   for (int lag = -max_lag; lag <= max_lag; ++lag)
     if (const double r = found(lag + max_lag); !std::isnan(r)) out.values[fmt::format("lag {}", lag)] = r;
 }
@@ -143,7 +155,7 @@ Inspect::Out Inspect::operator()(const Recording& recording, Context& context) c
 
 void describe(Description<Inspect>& d) {
   d.type("corpus.inspect")
-      .version(1)
+      .version(2)
       .summary("looks a recording over: rates, lengths, damage, sound against picture, phones")
       .source("docs/manifest.md")
       .stored();

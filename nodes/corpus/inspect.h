@@ -10,6 +10,7 @@ namespace talkgraph {
 /// Looks a recording over before it is trained on. Findings, where there is something to find:
 ///   sound_rate, sound_seconds, sound_peak
 ///   fps, frames, width, height, picture_seconds, damaged, damaged_from, damaged_to (frames, as media.check_video sees)
+///   blue, green, red (means of the lower face, 0 to 255)
 ///   transcript, words, phones, landmarks, visual: 1 where the recording has them
 ///   landmark_frames, landmark_gaps (frames with a point that is not a number)
 ///   "lag -8" ... "lag 8": how much the mouth follows the sound if it is that many frames late

@@ -26,7 +26,7 @@ ClipFindings clip(const std::string& id, int late, const std::string& split = "t
   c.findings.values = {{"sound_rate", 44100}, {"sound_seconds", 3},   {"sound_peak", 0.5}, {"fps", 25},
                        {"frames", 75},        {"picture_seconds", 3}, {"damaged", 0},      {"transcript", 1},
                        {"words", 0},          {"phones", 0},          {"landmarks", 1},    {"landmark_frames", 75},
-                       {"landmark_gaps", 0},  {"visual", 0}};
+                       {"landmark_gaps", 0},  {"red", 150},           {"visual", 0}};
   for (int lag = -8; lag <= 8; ++lag)
     c.findings.values["lag " + std::to_string(lag)] = std::max(0.0, 0.8 - 0.05 * (lag - late) * (lag - late));
   c.phones.values = {{"aa", 3}, {"b", 2}};
@@ -62,13 +62,14 @@ TEST(CorpusReport, TellsWhatIsWrongWithAClip) {
   marks.findings.values["landmark_frames"] = 70;
   marks.findings.values["landmark_gaps"] = 3;
   marks.findings.values["transcript"] = 0;
-  const Json report = corpus_report({clip("a", 0), clip("b", 0), clip("c", 0), clip("d", 0), clip("e", 0), clip("f", 0),
-                                     damaged, silent, fast, marks, late});
+  marks.findings.values["red"] = 220;
+  const Json report = corpus_report({clip("a", 0), clip("b", 0), damaged, silent, fast, marks, late});
   const std::string text = report_text(report);
   for (const char* part :
        {"damaged: 2 of 75 frames are damaged (10 to 12)", "silent: the sound is silent",
         "silent: the sound lasts 2.00 s, the picture 3.00 s", "fast: 50 frames a second, most clips have 25",
         "marks: landmarks of 70 frames, the picture has 75", "marks: 3 of 70 frames lack landmarks",
+        "marks: the picture's red is 220, of most clips 150",
         "late: the picture seems to be 6 frames late against the other clips", "6 of 7 clips, not marks",
         "frames a second: 25 (6), 50 (1)"})
     EXPECT_THAT(text, HasSubstr(part));

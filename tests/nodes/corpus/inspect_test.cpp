@@ -90,6 +90,8 @@ TEST(Inspect, TellsRatesAndLengths) {
   EXPECT_EQ(found.at("width"), 60);
   EXPECT_EQ(found.at("picture_seconds"), 3);
   EXPECT_EQ(found.at("damaged"), 0);
+  EXPECT_LT(found.at("red"), 180);
+  EXPECT_EQ(found.at("red"), found.at("blue"));
   for (const char* part : {"transcript", "words", "phones", "landmarks", "visual"}) EXPECT_EQ(found.at(part), 0);
   EXPECT_FALSE(found.contains("landmark_frames"));
 }
