@@ -207,9 +207,7 @@ std::string phone_text(const Json& report) {
 std::string offset_text(const Json& offset) {
   if (offset.is_null()) return "not measured: no pictures, or nothing in them moves\n";
   const double frames = offset["frames"];
-  const std::string where = std::abs(frames) < 0.5 ? "in time"
-                            : frames > 0           ? "the mouth is late"
-                                                   : "the mouth is early";
+  const std::string where = std::abs(frames) < 1 ? "in time" : frames > 0 ? "the mouth is late" : "the mouth is early";
   return fmt::format("{:+.1f} frames, {:+.0f} ms: {} (correlation {:.2f}, {} clips)\n", frames,
                      offset["milliseconds"].get<double>(), where, offset["correlation"].get<double>(),
                      offset["clips"].get<int>());
