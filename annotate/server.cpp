@@ -202,8 +202,9 @@ struct Server::State {
         return httplib::Server::HandlerResponse::Handled;
       }
     });
-    server.set_exception_handler(
-        [](const Request&, Response& response, std::exception_ptr failure) { answer_failure(response, failure); });
+    server.set_exception_handler([](const Request&, Response& response, const std::exception_ptr& failure) {
+      answer_failure(response, failure);
+    });
     // The library would let several servers share a port.
     server.set_socket_options([](socket_t socket) {
       const int yes = 1;

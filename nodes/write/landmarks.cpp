@@ -42,7 +42,7 @@ Artifact WriteLandmarks::operator()(const LandmarkTrack& landmarks, Context& con
   const auto has_landmarks = [](const Shape& shape) { return !shape.array().isNaN().all(); };
   if (std::none_of(frames.begin(), frames.end(), has_landmarks))
     throw std::invalid_argument("the clip has no frame to write landmarks of");
-  const Artifact artifact = item_file(context, folder, "", "landmarks");
+  Artifact artifact = item_file(context, folder, "", "landmarks");
   for (std::size_t t = 0; t < frames.size(); ++t)
     if (has_landmarks(frames[t])) write_pts(numbered(context.file(artifact.path), t, ".pts"), frames[t]);
   return artifact;
