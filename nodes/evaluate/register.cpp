@@ -5,6 +5,7 @@
 #include "nodes/evaluate/explained.h"
 #include "nodes/evaluate/mouth_lag.h"
 #include "nodes/evaluate/mouth_opening.h"
+#include "nodes/evaluate/pictures.h"
 #include "nodes/evaluate/score.h"
 #include "nodes/evaluate/seams.h"
 #include "nodes/evaluate/sequences.h"
@@ -18,6 +19,7 @@ void register_evaluate(Registry& registry) {
   registry.add<Explained>();
   registry.add<MouthLag>();
   registry.add<MouthOpening>();
+  registry.add<ComparePictures>();
   registry.add<Score>();
   registry.add<Seams>();
   registry.add<SequenceTable>();

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "graph/description.h"
+#include "nodes/types/report.h"
+#include "nodes/types/shape.h"
+#include "nodes/types/video.h"
+
+namespace talkgraph {
+
+/// How near a drawn face comes to the recorded one, in the pictures of one clip:
+///   psnr_face, psnr_mouth   peak signal to noise ratio inside the hull of all landmarks, and of the mouth's, decibels
+///   ssim_face, ssim_mouth   structural similarity of the grey levels there (Wang et al. 2004; Gaussian of 1.5 pixels)
+///   sharpness  energy of the grey levels' gradient inside the lips, drawn over recorded, frames with parted lips
+///   jumps      root mean square change from frame to frame in the mouth, drawn over recorded
+///   seam       root mean square step across the face's edge (the hull's outline), drawn over recorded
+/// A ratio is NaN where nothing is recorded to compare with, the PSNR of equal pictures 100. Damaged frames do not
+/// count; nothing is given without a frame that does. Throws
+/// std::runtime_error if the videos differ in size, lengths differ by more than two frames, or a point is missing.
+struct ComparePictures {
+  std::vector<int> mouth = {48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59};  ///< around the lips (iBUG)
+  std::vector<int> inner = {60, 61, 62, 63, 64, 65, 66, 67};                  ///< inside the lips (iBUG)
+  double parted = 0.12;  ///< least height of the inner lips' hull that counts as parted, share of its width
+
+  std::optional<Scores> operator()(const Video& recorded, const Video& drawn, const LandmarkTrack& landmarks) const;
+};
+void describe(Description<ComparePictures>& d);
+
+}  // namespace talkgraph
