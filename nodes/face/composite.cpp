@@ -1,13 +1,18 @@
 #include "nodes/face/composite.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "nodes/face/draw.h"
 #include "nodes/face/geometry.h"
+#include "nodes/face/look.h"
+#include "nodes/face/membrane.h"
 #include "nodes/face/sampling.h"
 #include "nodes/face/shapes.h"
 
@@ -41,8 +46,11 @@ Shape ring_around(const Shape& shape) {
 /// Everything about a model and its blending that does not change from frame to frame.
 class Painter {
  public:
-  Painter(const CompositeFace& settings, AppearanceModel model)
-      : whole_(settings.part == FacePart::whole), model_(std::move(model)), raster_(model_.levels.at(0).raster) {
+  Painter(const CompositeFace& settings, const Looks& looks)
+      : whole_(settings.part == FacePart::whole),
+        looks_(looks),
+        model_(looks.model()),
+        raster_(model_.levels[0].raster) {
     ring_ = ring_around(model_.mean_shape);
     mesh_ = delaunay(with_ring(model_.mean_shape, ring_));
     const double top = raster_.points.col(1).minCoeff(), height = raster_.points.col(1).maxCoeff() - top;
@@ -51,45 +59,60 @@ class Painter {
     };
     moves_.resize(model_.points());
     for (Eigen::Index i = 0; i < moves_.size(); ++i) moves_(i) = share_below(raster_.points(i, 1));
-    make_masks(share_below, settings.feather * (raster_.width - 3));
+    make_masks(share_below, settings);
   }
 
-  cv::Mat paint(const cv::Mat& frame, const FaceTrack& track, std::size_t t, const Eigen::VectorXd& c) const {
+  cv::Mat paint(const cv::Mat& frame, const FaceTrack& track, std::size_t t, const Look& look) const {
     const Eigen::VectorXd own = track.parameters.values.row(static_cast<Eigen::Index>(t));
     const Pose& pose = track.poses[t];
-    const Shape before = model_.shape(own), after = moved(before, model_.shape(c));
-    const Shape ring = transform(pose, ring_);
-    const Shape from = transform(pose, before), to = transform(pose, after);
+    const Shape before = model_.shape(own), after = moved(before, look.shape);
+    cv::Mat painted = frame.clone();
+    const cv::Rect part = surroundings(transform(pose, ring_), frame.size());
+    if (part.empty()) return painted;
+    const Pose here{pose.scale, pose.angle, pose.dx - part.x, pose.dy - part.y};
+    const Shape ring = transform(here, ring_), from = transform(here, before), to = transform(here, after);
 
-    cv::Mat map = identity_map(frame.size()), bent;
+    cv::Mat map = identity_map(part.size()), bent;
     draw_map(map, with_ring(to, ring), with_ring(from, ring), mesh_);
-    cv::remap(frame, bent, map, cv::noArray(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    cv::remap(frame(part), bent, map, cv::noArray(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
     bent.convertTo(bent, CV_32FC3);
 
-    cv::Mat face_map = empty_map(frame.size());
+    cv::Mat face_map = empty_map(part.size());
     draw_map(face_map, to, raster_.points, model_.triangles);
-    blend(bent, face_map, track.gain[t], track.offset[t], own, c);
-    bent.convertTo(bent, CV_8UC3);
-    return bent;
+    blend(bent, face_map, track.gain[t], track.offset[t], model_.texture(own), look.texture);
+    bent.convertTo(painted(part), CV_8UC3);
+    return painted;
   }
 
-  const AppearanceModel& model() const { return model_; }
-
  private:
+  static cv::Rect surroundings(const Shape& ring, cv::Size size) {
+    const Eigen::RowVector2d low = ring.colwise().minCoeff(), high = ring.colwise().maxCoeff();
+    const auto within = [](double v, int n) { return static_cast<int>(std::clamp(v, -1.0, n + 1.0)); };
+    const cv::Point from(within(low.x() - 2, size.width), within(low.y() - 2, size.height)),
+        to(within(high.x() + 3, size.width), within(high.y() + 3, size.height));
+    return cv::Rect(from, to) & cv::Rect({}, size);
+  }
+
   template <class Share>
-  void make_masks(const Share& share_below, double feather) {
-    cv::Mat inside(raster_.height, raster_.width, CV_8U, cv::Scalar(0)), distance;
+  void make_masks(const Share& share_below, const CompositeFace& settings) {
+    const double feather = settings.feather * (raster_.width - 3);
+    cv::Mat inside(raster_.height, raster_.width, CV_8U, cv::Scalar(0)), distance, changed = inside.clone();
     for (std::size_t i = 0; i < raster_.x.size(); ++i) inside.at<unsigned char>(raster_.y[i], raster_.x[i]) = 255;
     cv::distanceTransform(inside, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-    const cv::Mat replaced = replaced_share();
+    const cv::Mat replaced = cv::max(replaced_share(), looks_.mouth_share());
     keep_ = cv::Mat(inside.size(), CV_32F, cv::Scalar(0));
     replace_ = keep_.clone();
     for (std::size_t i = 0; i < raster_.x.size(); ++i) {
       const cv::Point at(raster_.x[i], raster_.y[i]);
-      const auto mask = static_cast<float>(share_below(at.y) * smooth_step(0, feather, distance.at<float>(at) - 0.5));
+      const float below = std::max(static_cast<float>(share_below(at.y)), looks_.eye_share().at<float>(at));
+      changed.at<unsigned char>(at) = below > 0;
+      const float mask = settings.seam == Seam::poisson
+                             ? static_cast<float>(below > 0)
+                             : below * static_cast<float>(smooth_step(0, feather, distance.at<float>(at) - 0.5));
       replace_.at<float>(at) = mask * replaced.at<float>(at);
       keep_.at<float>(at) = mask - replace_.at<float>(at);
     }
+    if (settings.seam == Seam::poisson) membrane_.emplace(changed);
   }
 
   /// 1 where the texture varies far more than over the rest of the face (the
@@ -121,16 +144,20 @@ class Painter {
     if (whole_) return wanted;
     const Eigen::VectorXd stays = (1 - moves_.array()).max(1e-6);
     const Shape change = transform(align(wanted, before, stays), wanted) - before;
-    return before + moves_.asDiagonal() * change;
+    return with_points(before + moves_.asDiagonal() * change, wanted, looks_.eye_points());
   }
 
-  void blend(cv::Mat& bent, const cv::Mat& face_map, double gain, double offset, const Eigen::VectorXd& own,
-             const Eigen::VectorXd& c) const {
+  void blend(cv::Mat& bent, const cv::Mat& face_map, double gain, double offset, const Eigen::VectorXf& own,
+             const Eigen::VectorXf& wanted) const {
     const auto g = static_cast<float>(gain);
-    const Eigen::VectorXf wanted = model_.texture(c);
-    const Eigen::VectorXf change = g * (wanted - model_.texture(own));
+    const Eigen::VectorXf change = g * (wanted - own);
     const Eigen::VectorXf colour = (g * wanted).array() + static_cast<float>(offset);
     cv::Mat added = raster_picture(raster_, change), painted = raster_picture(raster_, colour, cv::Scalar::all(offset));
+    if (membrane_) {
+      const cv::Mat step = (*membrane_)(added);
+      added -= step;
+      painted -= step;
+    }
     cv::Mat keep, replace;
     cv::remap(added, added, face_map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
     cv::remap(painted, painted, face_map, cv::noArray(), cv::INTER_CUBIC, cv::BORDER_CONSTANT);
@@ -145,12 +172,14 @@ class Painter {
   }
 
   bool whole_;
-  AppearanceModel model_;
+  const Looks& looks_;
+  const AppearanceModel& model_;
   const Raster& raster_;
   Shape ring_;
   Triangles mesh_;
-  Eigen::VectorXd moves_;   ///< per landmark: 1 follows the parameters, 0 stays
-  cv::Mat keep_, replace_;  ///< raster: shares of adding to, and of replacing, the base picture
+  Eigen::VectorXd moves_;             ///< per landmark: 1 follows the parameters, 0 stays
+  cv::Mat keep_, replace_;            ///< raster: shares of adding to, and of replacing, the base picture
+  std::optional<Membrane> membrane_;  ///< over what is changed
 };
 
 struct Run {
@@ -174,16 +203,18 @@ std::int64_t back_and_forth(std::int64_t i, std::int64_t n) {
 }
 
 struct Plan {
-  Plan(const CompositeFace& settings, const AppearanceModel& model) : painter(settings, model) {}
+  Plan(const CompositeFace& settings, std::shared_ptr<const Looks> shown)
+      : looks(std::move(shown)), painter(settings, *looks) {}
+  std::shared_ptr<const Looks> looks;
   Painter painter;
-  Track parameters;
   BaseClip base;
   Run run;
   bool loops = false;  ///< the run is too short, so it goes back and forth
   std::string settings;
 
+  const Track& parameters() const { return looks->parameters(); }
   std::int64_t base_frame(std::int64_t t) const {
-    const double seconds = (static_cast<double>(t) + 0.5) / parameters.rate.value();
+    const double seconds = (static_cast<double>(t) + 0.5) / parameters().rate.value();
     const auto i = static_cast<std::int64_t>(seconds * base.frames.source->rate().value());
     return run.first + back_and_forth(i, run.length);
   }
@@ -192,14 +223,13 @@ struct Plan {
 class CompositeReader final : public VideoSource::Reader {
  public:
   explicit CompositeReader(std::shared_ptr<const Plan> plan)
-      : plan_(std::move(plan)), base_(plan_->base.frames.source->open()) {}
+      : plan_(std::move(plan)), looks_(plan_->looks), base_(plan_->base.frames.source->open()) {}
 
   bool next(cv::Mat& frame) override {
-    if (at_ == plan_->parameters.frames()) return false;
-    const auto t = plan_->base_frame(at_);
-    frame = plan_->painter.paint(picture(t), plan_->base.track, static_cast<std::size_t>(t),
-                                 plan_->parameters.values.row(at_));
-    ++at_;
+    const Look* look = looks_.next();
+    if (!look) return false;
+    const auto t = plan_->base_frame(at_++);
+    frame = plan_->painter.paint(picture(t), plan_->base.track, static_cast<std::size_t>(t), *look);
     return true;
   }
 
@@ -215,6 +245,7 @@ class CompositeReader final : public VideoSource::Reader {
   }
 
   std::shared_ptr<const Plan> plan_;
+  LookReader looks_;
   std::unique_ptr<VideoSource::Reader> base_;
   cv::Mat frame_;             // the last one read
   std::vector<cv::Mat> run_;  // kept where the base runs backwards later on
@@ -224,20 +255,17 @@ class CompositeReader final : public VideoSource::Reader {
 class CompositeSource final : public VideoSource {
  public:
   explicit CompositeSource(std::shared_ptr<const Plan> plan) : plan_(std::move(plan)) {}
-  Rational rate() const override { return plan_->parameters.rate; }
-  std::int64_t frames() const override { return plan_->parameters.frames(); }
+  Rational rate() const override { return plan_->parameters().rate; }
+  std::int64_t frames() const override { return plan_->parameters().frames(); }
   cv::Size size() const override { return plan_->base.frames.source->size(); }
   std::unique_ptr<Reader> open() const override { return std::make_unique<CompositeReader>(plan_); }
   std::string name() const override { return "face drawn on " + plan_->base.frames.source->name(); }
   Key key() const override {
     return content_key([&](Archive& ar) {
-      auto model = plan_->painter.model();
-      auto parameters = plan_->parameters;
       auto track = plan_->base.track;
       auto base = plan_->base.frames.source->key();
       auto settings = plan_->settings;
-      ar("model", model);
-      ar("parameters", parameters);
+      plan_->looks->hash(ar);
       ar("track", track);
       ar("base", base);
       ar("settings", settings);
@@ -252,7 +280,7 @@ class CompositeSource final : public VideoSource {
 void limit_run(Plan& plan) {
   constexpr double longest = 10;  // seconds
   const double base_rate = plan.base.frames.source->rate().value();
-  const double needed = static_cast<double>(plan.parameters.frames()) / plan.parameters.rate.value() * base_rate;
+  const double needed = static_cast<double>(plan.parameters().frames()) / plan.parameters().rate.value() * base_rate;
   plan.loops = needed > static_cast<double>(plan.run.length);
   if (plan.loops)
     plan.run.length = std::min(plan.run.length, static_cast<std::int64_t>(std::ceil(longest * base_rate)));
@@ -260,18 +288,15 @@ void limit_run(Plan& plan) {
 
 }  // namespace
 
-Video CompositeFace::operator()(const AppearanceModel& model, const Track& parameters, const BaseClip& base) const {
-  check_dimension(model, parameters);
+Video CompositeFace::operator()(const AppearanceModel& model, const Track& parameters, const BaseClip& base,
+                                const Eyes* eyes, const MouthTrack* mouths) const {
   check_dimension(model, base.track.parameters);
-  if (!parameters.values.allFinite())
-    throw std::runtime_error("the appearance parameters hold a value that is not a number");
   if (blend_from > blend_to) throw std::invalid_argument("blend_from must not exceed blend_to");
-  auto plan = std::make_shared<Plan>(*this, model);
-  plan->parameters = parameters;
+  auto plan = std::make_shared<Plan>(*this, std::make_shared<Looks>(model, parameters, eyes, mouths));
   plan->base = base;
   plan->run = longest_good_run(base.track);
-  plan->settings = std::to_string(static_cast<int>(part)) + " " + std::to_string(blend_from) + " " +
-                   std::to_string(blend_to) + " " + std::to_string(feather);
+  plan->settings =
+      fmt::format("{} {} {} {} {}", static_cast<int>(part), blend_from, blend_to, static_cast<int>(seam), feather);
   limit_run(*plan);
   if (plan->run.length == 0)
     throw std::runtime_error(
@@ -282,11 +307,13 @@ Video CompositeFace::operator()(const AppearanceModel& model, const Track& param
 }
 
 void describe(Description<CompositeFace>& d) {
-  d.type("face.composite").version(1).summary("draws a synthesised face on the frames of a real clip");
+  d.type("face.composite").version(4).summary("draws a synthesised face on the frames of a real clip");
   d.source("Thesis §3.1.3, §6.3.5; docs/method.md §2");
   d.input("model", "of the face")
       .input("parameters", "appearance parameters c")
       .input("base", "what is drawn upon; it runs forwards and backwards where it is too short")
+      .input("eyes", "shown in place of the base's")
+      .input("mouths", "real ones, shown in place of the model's")
       .output("video", "as many frames as the parameters have");
   d.param("part", &CompositeFace::part)
       .doc("what the parameters rule: the lower face, or all of it with eyes and brows");
@@ -296,9 +323,11 @@ void describe(Description<CompositeFace>& d) {
   d.param("blend_to", &CompositeFace::blend_to)
       .within(0, 1)
       .doc("share of the face's height below which the parameters rule");
+  d.param("seam", &CompositeFace::seam)
+      .doc("how the face joins the picture: its change fades out, or keeps its gradients");
   d.param("feather", &CompositeFace::feather)
       .within(0, 0.5)
-      .doc("width of the blend at the face's edge, share of its width");
+      .doc("width of the fading at the face's edge, share of its width");
 }
 
 }  // namespace talkgraph

@@ -10,6 +10,11 @@ namespace talkgraph {
 /// triangles of `to`, the position that it comes from in `from`.
 void draw_map(cv::Mat& map, const Shape& to, const Shape& from, const Triangles& triangles);
 
+/// Draws the triangles `from` of `texture` (8-bit, four channels, the fourth ignored) as the triangles `to` of an 8-bit
+/// BGR picture, bilinear. Neither side of the texture may exceed 16000 pixels.
+void draw_triangles(cv::Mat& picture, const Shape& to, const cv::Mat& texture, const Shape& from,
+                    const Triangles& triangles);
+
 /// For a picture of `size`: every pixel maps to itself.
 cv::Mat identity_map(cv::Size size);
 /// For a picture of `size`: every pixel maps outside of any picture.

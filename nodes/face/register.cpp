@@ -5,13 +5,16 @@
 #include "nodes/face/choose_base.h"
 #include "nodes/face/composite.h"
 #include "nodes/face/crop.h"
+#include "nodes/face/eyes.h"
 #include "nodes/face/landmarks.h"
 #include "nodes/face/modes.h"
+#include "nodes/face/mouths.h"
 #include "nodes/face/parameters.h"
 #include "nodes/face/prototype_sheet.h"
 #include "nodes/face/prototypes.h"
 #include "nodes/face/render.h"
 #include "nodes/face/report.h"
+#include "nodes/face/select_mouths.h"
 #include "nodes/face/shapes.h"
 #include "nodes/face/side_by_side.h"
 #include "nodes/face/strip.h"
@@ -30,6 +33,9 @@ void register_face(Registry& registry) {
   registry.add<ChooseBase>();
   registry.add<CompositeFace>();
   registry.add<RenderFace>();
+  registry.add<MakeEyes>();
+  registry.add<KeepMouths>();
+  registry.add<SelectMouths>();
   registry.add<Crop>();
   registry.add<SideBySide>();
   registry.add<FrameStrip>();

@@ -1,13 +1,11 @@
 #include "nodes/face/render.h"
 
 #include <cmath>
-#include <opencv2/imgproc.hpp>
-#include <stdexcept>
+#include <cstring>
+#include <opencv2/core/hal/intrin.hpp>
 
 #include "nodes/face/draw.h"
-#include "nodes/face/geometry.h"
-#include "nodes/face/sampling.h"
-#include "nodes/face/shapes.h"
+#include "nodes/face/look.h"
 
 namespace talkgraph {
 namespace {
@@ -19,77 +17,116 @@ cv::Size canvas(const AppearanceModel& model, double zoom) {
   return {side(extent.x()), side(extent.y())};
 }
 
+/// Draws faces of one model, one after the other.
+class Brush {
+ public:
+  Brush(const AppearanceModel& model, double zoom, int background)
+      : model_(model), zoom_(zoom), background_(background), size_(canvas(model, zoom)) {
+    const auto& raster = model.levels.at(0).raster;
+    picture_ = cv::Mat(raster.height, raster.width, CV_8UC4, cv::Scalar::all(background));
+    middle_ = 0.5 * (model.mean_shape.colwise().maxCoeff() + model.mean_shape.colwise().minCoeff());
+  }
+
+  cv::Mat operator()(const Look& look) {
+    const auto& raster = model_.levels[0].raster;
+    lay_out(look.texture);
+    const Shape to = ((look.shape.rowwise() - middle_) * zoom_).rowwise() +
+                     Eigen::RowVector2d(0.5 * (size_.width - 1), 0.5 * (size_.height - 1));
+    cv::Mat out(size_, CV_8UC3, cv::Scalar::all(background_));
+    draw_triangles(out, to, picture_, raster.points, model_.triangles);
+    return out;
+  }
+
+ private:
+  /// The texture in grey levels, as a picture.
+  void lay_out(const Eigen::VectorXf& texture) {
+    const auto& raster = model_.levels[0].raster;
+    const auto gain = cv::v_setall_f32(static_cast<float>(model_.texture_gain)),
+               offset = cv::v_setall_f32(static_cast<float>(model_.texture_offset));
+    auto* const pixels = picture_.data;
+    const auto step = static_cast<std::ptrdiff_t>(picture_.step);
+    const auto put = [&](std::size_t i, const float* value) {
+      const auto grey = cv::v_round(cv::v_load(value) * gain + offset);
+      const auto narrow = cv::v_pack(grey, grey);
+      const unsigned pixel = cv::v_reinterpret_as_u32(cv::v_pack_u(narrow, narrow)).get0();
+      std::memcpy(pixels + raster.y[i] * step + 4 * raster.x[i], &pixel, 4);
+    };
+    const std::size_t last = raster.x.size() - 1;
+    for (std::size_t i = 0; i < last; ++i) put(i, texture.data() + 3 * i);
+    const float end[4] = {texture(texture.size() - 3), texture(texture.size() - 2), texture(texture.size() - 1), 0};
+    put(last, end);
+  }
+
+  const AppearanceModel& model_;
+  double zoom_;
+  int background_;
+  cv::Size size_;
+  Eigen::RowVector2d middle_;
+  cv::Mat picture_;
+};
+
 struct Scene {
-  AppearanceModel model;
-  Track parameters;
+  std::shared_ptr<const Looks> looks;
   RenderFace settings;
 };
 
 class FaceReader final : public VideoSource::Reader {
  public:
-  explicit FaceReader(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {}
+  explicit FaceReader(const Scene& scene)
+      : looks_(scene.looks),
+        reader_(scene.looks),
+        brush_(looks_->model(), scene.settings.zoom, scene.settings.background) {}
   bool next(cv::Mat& frame) override {
-    if (at_ == scene_->parameters.frames()) return false;
-    frame = draw_face(scene_->model, scene_->parameters.values.row(at_++), scene_->settings.zoom,
-                      scene_->settings.background);
-    return true;
+    const Look* look = reader_.next();
+    if (look) frame = brush_(*look);
+    return look;
   }
 
  private:
-  std::shared_ptr<const Scene> scene_;
-  Eigen::Index at_ = 0;
+  std::shared_ptr<const Looks> looks_;
+  LookReader reader_;
+  Brush brush_;
 };
 
 class FaceSource final : public VideoSource {
  public:
-  explicit FaceSource(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {}
-  Rational rate() const override { return scene_->parameters.rate; }
-  std::int64_t frames() const override { return scene_->parameters.frames(); }
-  cv::Size size() const override { return canvas(scene_->model, scene_->settings.zoom); }
+  explicit FaceSource(Scene scene) : scene_(std::move(scene)) {}
+  Rational rate() const override { return scene_.looks->parameters().rate; }
+  std::int64_t frames() const override { return scene_.looks->parameters().frames(); }
+  cv::Size size() const override { return canvas(scene_.looks->model(), scene_.settings.zoom); }
   std::unique_ptr<Reader> open() const override { return std::make_unique<FaceReader>(scene_); }
   std::string name() const override { return "rendered face"; }
   Key key() const override {
     return content_key([&](Archive& ar) {
-      auto scene = *scene_;
-      ar("model", scene.model);
-      ar("parameters", scene.parameters);
-      ar("zoom", scene.settings.zoom);
-      ar("background", scene.settings.background);
+      auto settings = scene_.settings;
+      scene_.looks->hash(ar);
+      ar("zoom", settings.zoom);
+      ar("background", settings.background);
     });
   }
 
  private:
-  std::shared_ptr<const Scene> scene_;
+  Scene scene_;
 };
 
 }  // namespace
 
 cv::Mat draw_face(const AppearanceModel& model, const Eigen::VectorXd& c, double zoom, int background) {
-  const auto size = canvas(model, zoom);
-  const auto& raster = model.levels.at(0).raster;
-  const Eigen::RowVector2d middle =
-      0.5 * (model.mean_shape.colwise().maxCoeff() + model.mean_shape.colwise().minCoeff());
-  const Shape to = ((model.shape(c).rowwise() - middle) * zoom).rowwise() +
-                   Eigen::RowVector2d(0.5 * (size.width - 1), 0.5 * (size.height - 1));
-  const Eigen::VectorXf texture =
-      (model.texture(c) * static_cast<float>(model.texture_gain)).array() + static_cast<float>(model.texture_offset);
-  cv::Mat picture = raster_picture(raster, texture, cv::Scalar::all(background)), map = empty_map(size), out;
-  draw_map(map, to, raster.points, model.triangles);
-  cv::remap(picture, out, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar::all(background));
-  out.convertTo(out, CV_8UC3);
-  return out;
+  return Brush(model, zoom, background)({model.shape(c), model.texture(c)});
 }
 
-Video RenderFace::operator()(const AppearanceModel& model, const Track& parameters) const {
-  check_dimension(model, parameters);
-  return {std::make_shared<FaceSource>(std::make_shared<Scene>(Scene{model, parameters, *this})), {}};
+Video RenderFace::operator()(const AppearanceModel& model, const Track& parameters, const Eyes* eyes,
+                             const MouthTrack* mouths) const {
+  return {std::make_shared<FaceSource>(Scene{std::make_shared<Looks>(model, parameters, eyes, mouths), *this}), {}};
 }
 
 void describe(Description<RenderFace>& d) {
-  d.type("face.render").version(1).summary("the face of appearance parameters alone, on a plain background");
-  d.source("Thesis Eqn 3.18; docs/method.md §2");
+  d.type("face.render").version(2).summary("the face of appearance parameters alone, on a plain background");
+  d.source("Thesis Eqn 3.18, §6.3.5; docs/method.md §2");
   d.input("model", "of the face")
       .input("parameters", "appearance parameters c")
+      .input("eyes", "shown in place of the parameters' own")
+      .input("mouths", "real ones, shown in place of the model's")
       .output("video", "as many frames as the track has");
   d.param("zoom", &RenderFace::zoom).positive().doc("pixels per pixel of the mean shape");
   d.param("background", &RenderFace::background).within(0, 255).doc("grey level around the face");

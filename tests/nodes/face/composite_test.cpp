@@ -15,7 +15,6 @@
 #include "nodes/face/render.h"
 #include "nodes/face/shapes.h"
 #include "nodes/face/side_by_side.h"
-#include "nodes/face/strip.h"
 #include "nodes/face/track.h"
 #include "synthetic_face.h"
 #include "tests/temporary_folder.h"
@@ -53,10 +52,14 @@ BaseClip base_of(const Video& video) { return MakeBaseClip{}(video, track(video)
 
 TEST(CompositeFace, OwnParametersReproduceThePicture) {
   const auto base = base_of(talking(5));
-  for (const auto part : {FacePart::lower, FacePart::whole}) {
+  for (const auto& [part, seam] : {std::pair{FacePart::lower, Seam::feather},
+                                   {FacePart::whole, Seam::feather},
+                                   {FacePart::lower, Seam::poisson},
+                                   {FacePart::whole, Seam::poisson}}) {
     CompositeFace node;
     node.part = part;
-    const auto drawn = node(model(), base.track.parameters, base).read_all();
+    node.seam = seam;
+    const auto drawn = node(model(), base.track.parameters, base, nullptr, nullptr).read_all();
     const auto real = base.frames.read_all();
     ASSERT_EQ(drawn.size(), 5u);
     for (std::size_t t = 0; t < 5; ++t) EXPECT_GT(test::psnr(drawn[t], real[t]), 38) << t;
@@ -65,7 +68,7 @@ TEST(CompositeFace, OwnParametersReproduceThePicture) {
 
 TEST(CompositeFace, PutsTheMouthOfOneClipOnAnother) {
   const auto shut = base_of(still(0.1, 2)), open = base_of(still(0.9, 2));
-  const auto drawn = CompositeFace{}(model(), open.track.parameters, shut).read_all();
+  const auto drawn = CompositeFace{}(model(), open.track.parameters, shut, nullptr, nullptr).read_all();
   const auto wanted = open.frames.read_all(), before = shut.frames.read_all();
   EXPECT_GT(test::psnr(drawn[0], wanted[0]), test::psnr(before[0], wanted[0]) + 8);
   EXPECT_GT(test::psnr(drawn[0], wanted[0]), 32);
@@ -73,7 +76,7 @@ TEST(CompositeFace, PutsTheMouthOfOneClipOnAnother) {
 
 TEST(CompositeFace, LeavesTheRestOfThePictureAlone) {
   const auto shut = base_of(still(0.1, 1)), open = base_of(still(0.9, 1));
-  const auto drawn = CompositeFace{}(model(), open.track.parameters, shut).read_all()[0];
+  const auto drawn = CompositeFace{}(model(), open.track.parameters, shut, nullptr, nullptr).read_all()[0];
   const auto before = shut.frames.read_all()[0];
   EXPECT_EQ(cv::norm(drawn.rowRange(0, 15), before.rowRange(0, 15), cv::NORM_INF), 0);
   const cv::Rect eyes(70, 70, 60, 20);
@@ -86,7 +89,7 @@ TEST(CompositeFace, RunsAShortBaseBackAndForth) {
   p.values = Eigen::MatrixXd(7, model().modes());
   for (int t = 0; t < 7; ++t)
     p.values.row(t) = base.track.parameters.values.row(std::vector<int>{0, 1, 2, 1, 0, 1, 2}[t]);
-  const auto drawn = CompositeFace{}(model(), p, base).read_all();
+  const auto drawn = CompositeFace{}(model(), p, base, nullptr, nullptr).read_all();
   ASSERT_EQ(drawn.size(), 7u);
   EXPECT_EQ(cv::norm(drawn[1], drawn[3], cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(drawn[0], drawn[4], cv::NORM_INF), 0);
@@ -97,23 +100,24 @@ TEST(CompositeFace, DrawsOnGoodFramesOnly) {
   base.track.lost = {1, 0, 0, 1};
   Track p = base.track.parameters;
   p.values = base.track.parameters.values.middleRows(1, 1).eval();
-  EXPECT_GT(test::psnr(CompositeFace{}(model(), p, base).read_all()[0], base.frames.read_all()[1]), 38);
+  EXPECT_GT(test::psnr(CompositeFace{}(model(), p, base, nullptr, nullptr).read_all()[0], base.frames.read_all()[1]),
+            38);
   base.track.lost = {1, 1, 1, 1};
-  EXPECT_THROW(CompositeFace{}(model(), p, base), std::runtime_error);
+  EXPECT_THROW(CompositeFace{}(model(), p, base, nullptr, nullptr), std::runtime_error);
 }
 
 TEST(CompositeFace, RefusesParametersOfAnotherModel) {
   const auto base = base_of(talking(1));
   Track p = base.track.parameters;
   p.values.conservativeResize(1, p.values.cols() - 1);
-  EXPECT_THROW(CompositeFace{}(model(), p, base), std::runtime_error);
+  EXPECT_THROW(CompositeFace{}(model(), p, base, nullptr, nullptr), std::runtime_error);
   p.values = Eigen::MatrixXd::Constant(1, model().modes(), std::nan(""));
-  EXPECT_THROW(CompositeFace{}(model(), p, base), std::runtime_error);
+  EXPECT_THROW(CompositeFace{}(model(), p, base, nullptr, nullptr), std::runtime_error);
 }
 
 TEST(RenderFace, ShowsTheMeanFace) {
   Track p{Eigen::MatrixXd::Zero(2, model().modes()), Rational(25), 0.02, {}};
-  const auto video = RenderFace{}(model(), p);
+  const auto video = RenderFace{}(model(), p, nullptr, nullptr);
   const auto frames = video.read_all();
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames[0].size(), video.source->size());
@@ -221,18 +225,12 @@ TEST(Crop, RefusesWhatHoldsNothing) {
   EXPECT_THAT(crop_error(video, corners({{-500, 10}})), testing::HasSubstr("outside the picture"));
 }
 
-TEST(Sinks, WriteTheirPictures) {
+TEST(FaceModes, AreAPicture) {
   const test::TemporaryFolder folder;
   Context context;
   context.folder = folder.path();
-  context.item = "utterance";
-  const FrameLabels labels{{"sil", "aa"}, Rational(25)};
-  const auto strip = FrameStrip{}(talking(3), &labels, context);
-  EXPECT_EQ(strip.path, "strips/utterance.png");
-  EXPECT_EQ(cv::imread((context.folder / strip.path).string()).cols, 3 * 160);
   const auto modes = FaceModes{}(model(), nullptr, context);
   EXPECT_FALSE(cv::imread((context.folder / modes.path).string()).empty());
-  EXPECT_THROW(FrameStrip{}(video_from_frames({}, Rational(25)), nullptr, context), std::runtime_error);
   context.folder = "/proc/nowhere";
   EXPECT_THROW(FaceModes{}(model(), nullptr, context), std::runtime_error);
 }

@@ -1,0 +1,109 @@
+#include "nodes/face/select_mouths.h"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "nodes/face/mouth_region.h"
+#include "nodes/face/shapes.h"
+
+namespace talkgraph {
+namespace {
+
+/// The nearest mouths of every frame, T × n, and their squared distances.
+struct Near {
+  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> mouth;
+  Eigen::MatrixXd distance;
+};
+
+Near nearest(const Eigen::MatrixXd& wanted, const Eigen::MatrixXd& kept, Eigen::Index count) {
+  Near near{{wanted.cols(), count}, {wanted.cols(), count}};
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(kept.cols()));
+  for (Eigen::Index t = 0; t < wanted.cols(); ++t) {
+    const Eigen::RowVectorXd distance = (kept.colwise() - wanted.col(t)).colwise().squaredNorm();
+    std::iota(order.begin(), order.end(), 0);
+    std::partial_sort(order.begin(), order.begin() + count, order.end(), [&](Eigen::Index a, Eigen::Index b) {
+      return std::pair(distance(a), a) < std::pair(distance(b), b);
+    });
+    for (Eigen::Index i = 0; i < count; ++i) {
+      near.mouth(t, i) = order[static_cast<std::size_t>(i)];
+      near.distance(t, i) = distance(near.mouth(t, i));
+    }
+  }
+  return near;
+}
+
+/// Normalised textures of the real mouths, a column each.
+Eigen::MatrixXf textures(const AppearanceModel& model, const Mouths& mouths) {
+  const auto& picture = mouths.pictures.front().pixels;
+  Eigen::MatrixXf all(3 * picture.total(), mouths.size());
+  for (Eigen::Index i = 0; i < all.cols(); ++i) {
+    cv::Mat column(picture.size(), CV_32FC3, all.col(i).data());
+    mouths.pictures[static_cast<std::size_t>(i)].pixels.convertTo(column, CV_32FC3, 1 / model.texture_gain);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> cheapest_path(const Eigen::MatrixXd& cost,
+                                        const std::function<Eigen::MatrixXd(Eigen::Index)>& step) {
+  const auto frames = cost.rows(), states = cost.cols();
+  if (frames == 0 || states == 0) return {};
+  Eigen::MatrixXd total = cost;
+  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> from(frames, states);
+  for (Eigen::Index t = 1; t < frames; ++t) {
+    const Eigen::MatrixXd way = step(t).colwise() + total.row(t - 1).transpose();
+    for (Eigen::Index j = 0; j < states; ++j) total(t, j) += way.col(j).minCoeff(&from(t, j));
+  }
+  std::vector<std::int64_t> path(static_cast<std::size_t>(frames));
+  Eigen::Index at = 0;
+  total.row(frames - 1).minCoeff(&at);
+  for (auto t = frames; t-- > 0;) {
+    path[static_cast<std::size_t>(t)] = at;
+    if (t > 0) at = from(t, at);
+  }
+  return path;
+}
+
+MouthTrack SelectMouths::operator()(const AppearanceModel& model, const Mouths& mouths, const Track& parameters) const {
+  check_dimension(model, parameters);
+  MouthTrack out{mouths, {}};
+  if (mouths.size() == 0 || parameters.frames() == 0) return out;
+  if (mouths.parameters.cols() != model.modes())
+    throw std::runtime_error("the mouths were made with another face model");
+  if (!parameters.values.allFinite())
+    throw std::runtime_error("the appearance parameters hold a value that is not a number");
+  const auto metric = mouth_metric(model, mouth_region(model, mouths.points, mouths.margin), mouths.points);
+  const auto near = nearest(metric * parameters.values.transpose(), metric * mouths.parameters.transpose(),
+                            std::min<Eigen::Index>(candidates, mouths.size()));
+  const Eigen::MatrixXf real = textures(model, mouths);
+  const Eigen::RowVectorXd size = real.colwise().squaredNorm().cast<double>();
+  const auto path = cheapest_path(near.distance, [&](Eigen::Index t) {
+    const auto before = near.mouth.row(t - 1).transpose().eval(), now = near.mouth.row(t).transpose().eval();
+    const Eigen::MatrixXf likeness = real(Eigen::all, before).transpose() * real(Eigen::all, now);
+    const Eigen::MatrixXd sum =
+        size(before).transpose().replicate(1, now.size()) + size(now).replicate(before.size(), 1);
+    return Eigen::MatrixXd(smoothness * (sum - 2 * likeness.cast<double>()).cwiseMax(0));
+  });
+  for (Eigen::Index t = 0; t < parameters.frames(); ++t)
+    out.chosen.push_back(near.mouth(t, path[static_cast<std::size_t>(t)]));
+  return out;
+}
+
+void describe(Description<SelectMouths>& d) {
+  d.type("face.select_mouths")
+      .version(1)
+      .summary("the sequence of real mouths that follows synthesised appearance parameters most closely")
+      .source("after Wang, Qian, Han & Soong 2010; docs/method.md §2");
+  d.input("model", "of the face")
+      .input("mouths", "to choose from; none: the face stays as the model draws it")
+      .input("parameters", "appearance parameters c")
+      .output("mouths", "one for every frame");
+  d.param("smoothness", &SelectMouths::smoothness)
+      .at_least(0)
+      .doc("weight of the difference between the mouths of consecutive frames against that from the parameters");
+  d.param("candidates", &SelectMouths::candidates).at_least(1).doc("nearest mouths among which a frame's is chosen");
+}
+
+}  // namespace talkgraph
