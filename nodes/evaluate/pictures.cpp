@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+
+#include "nodes/types/scheme.h"
 
 namespace talkgraph {
 namespace {
@@ -170,7 +173,14 @@ std::optional<Scores> ComparePictures::operator()(const Video& recorded, const V
     if (std::abs(frames - other) > 2)
       throw std::runtime_error(
           fmt::format("{} has {} frames, what it is compared with {}", recorded.source->name(), frames, other));
-  Comparison comparison(*this);
+  const auto with_points =
+      std::find_if(landmarks.frames.begin(), landmarks.frames.end(), [](const Shape& s) { return s.rows() > 0; });
+  if (with_points == landmarks.frames.end()) return {};
+  ComparePictures settings = *this;
+  const auto part = [&](const char* name) { return scheme_of(landmarks.scheme, with_points->rows()).named(name); };
+  if (mouth.empty()) settings.mouth = part("outer_lips");
+  if (inner.empty()) settings.inner = part("inner_lips");
+  Comparison comparison(settings);
   const auto left = recorded.source->open(), right = drawn.source->open();
   Frame now, before;
   bool counts = false, any = false;
@@ -178,11 +188,12 @@ std::optional<Scores> ComparePictures::operator()(const Video& recorded, const V
     now = {};
     if (!left->next(now.recorded) || !right->next(now.drawn)) break;
     const bool counted = counts;
-    counts = !recorded.is_damaged(static_cast<std::int64_t>(t)) && landmarks.frames[t].allFinite();
+    const Shape& shape = landmarks.frames[t];
+    counts = !recorded.is_damaged(static_cast<std::int64_t>(t)) && shape.rows() > 0 && shape.allFinite();
     if (!counts) continue;
     now.recorded_grey = grey(now.recorded);
     now.drawn_grey = grey(now.drawn);
-    comparison.add(now, counted ? &before : nullptr, landmarks.frames[t]);
+    comparison.add(now, counted ? &before : nullptr, shape);
     before = now;
     any = true;
   }
@@ -198,8 +209,12 @@ void describe(Description<ComparePictures>& d) {
       .input("drawn", "the same with a face drawn on it")
       .input("landmarks", "of the recorded face")
       .output("scores", "psnr_face, psnr_mouth, ssim_face, ssim_mouth, sharpness, jumps, seam");
-  d.param("mouth", &ComparePictures::mouth).at_least(0).doc("landmarks around the lips; iBUG: 48 to 59");
-  d.param("inner", &ComparePictures::inner).at_least(0).doc("landmarks inside the lips; iBUG: 60 to 67");
+  d.param("mouth", &ComparePictures::mouth)
+      .at_least(0)
+      .doc("landmarks around the lips; empty: outer lips of the point scheme");
+  d.param("inner", &ComparePictures::inner)
+      .at_least(0)
+      .doc("landmarks between the lips; empty: inner lips of the point scheme");
   d.param("parted", &ComparePictures::parted)
       .within(0, 1)
       .doc("least height between the lips, as a share of the width there, of frames whose sharpness counts");

@@ -13,13 +13,13 @@ namespace talkgraph {
 ///   sharpness  energy of the grey levels' gradient inside the lips, drawn over recorded, frames with parted lips
 ///   jumps      root mean square change from frame to frame in the mouth, drawn over recorded
 ///   seam       root mean square step across the face's edge (the hull's outline), drawn over recorded
-/// A ratio is NaN where nothing is recorded to compare with, the PSNR of equal pictures 100. Damaged frames do not
-/// count; nothing is given without a frame that does. Throws
+/// A ratio is NaN where nothing is recorded to compare with, the PSNR of equal pictures 100. Damaged frames and those
+/// without landmarks do not count; nothing is given without a frame that does. Throws
 /// std::runtime_error if the videos differ in size, lengths differ by more than two frames, or a point is missing.
 struct ComparePictures {
-  std::vector<int> mouth = {48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59};  ///< around the lips (iBUG)
-  std::vector<int> inner = {60, 61, 62, 63, 64, 65, 66, 67};                  ///< inside the lips (iBUG)
-  double parted = 0.12;  ///< least height of the inner lips' hull that counts as parted, share of its width
+  std::vector<int> mouth;  ///< around the lips; empty: the scheme's outer lips
+  std::vector<int> inner;  ///< between the lips; empty: the scheme's inner lips
+  double parted = 0.12;    ///< least height of the inner lips' hull that counts as parted, share of its width
 
   std::optional<Scores> operator()(const Video& recorded, const Video& drawn, const LandmarkTrack& landmarks) const;
 };

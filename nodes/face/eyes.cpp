@@ -8,12 +8,31 @@
 
 #include "nodes/face/draw.h"
 #include "nodes/face/shapes.h"
+#include "nodes/types/scheme.h"
 
 namespace talkgraph {
 namespace {
 
+/// The scheme's eyes and nose; an eye is a ring of points that begins at a corner and goes over the upper lid.
+MakeEyes with_scheme(MakeEyes eyes, const AppearanceModel& model) {
+  if (!eyes.points.empty()) return eyes;
+  const auto scheme = scheme_of(model.scheme, model.points());
+  for (const char* name : {"left_eye", "right_eye"}) {
+    const auto ring = scheme.named(name);
+    eyes.points.insert(eyes.points.end(), ring.begin(), ring.end());
+    for (std::size_t i = 1; i < ring.size() - i; ++i) {
+      eyes.upper_lids.push_back(ring[i]);
+      eyes.lower_lids.push_back(ring[ring.size() - i]);
+    }
+  }
+  for (const char* name : {"nose_bridge", "nose_base"}) {
+    const auto part = scheme.named(name);
+    eyes.nose.insert(eyes.nose.end(), part.begin(), part.end());
+  }
+  return eyes;
+}
+
 void check_points(const AppearanceModel& model, const MakeEyes& eyes) {
-  if (eyes.points.empty()) throw std::runtime_error("name the landmarks of the eyes: points");
   if (eyes.upper_lids.size() != eyes.lower_lids.size())
     throw std::runtime_error(fmt::format("{} points of upper lids, but {} of lower ones below them",
                                          eyes.upper_lids.size(), eyes.lower_lids.size()));
@@ -26,6 +45,7 @@ void check_points(const AppearanceModel& model, const MakeEyes& eyes) {
 
 /// The likeliest parameters given the gap between the lids: it is linear in c, and c is normal.
 Eigen::VectorXd shut_eyes(const AppearanceModel& model, const MakeEyes& eyes) {
+  if (eyes.upper_lids.empty()) throw std::runtime_error("name the landmarks of the lids: upper_lids, lower_lids");
   double gap = 0;
   Eigen::VectorXd slope = Eigen::VectorXd::Zero(model.modes());
   for (std::size_t i = 0; i < eyes.upper_lids.size(); ++i) {
@@ -60,8 +80,9 @@ Eyes MakeEyes::operator()(const AppearanceModel& model, const Track& parameters,
                           Random& random) const {
   check_dimension(model, parameters);
   if (source == EyeSource::base) return {};
-  check_points(model, *this);
-  Eyes out{parameters, points, nose};
+  const MakeEyes eyes = with_scheme(*this, model);
+  check_points(model, eyes);
+  Eyes out{parameters, eyes.points, eyes.nose};
   auto& c = out.parameters.values;
   if (source == EyeSource::given) {
     if (!given || given->frames() == 0)
@@ -77,7 +98,7 @@ Eyes MakeEyes::operator()(const AppearanceModel& model, const Track& parameters,
   for (const double begin : blinks(static_cast<double>(c.rows()) / rate, *this, random))
     for (Eigen::Index t = 0; t < c.rows(); ++t)
       closure(t) = std::max(closure(t), lid_closure((static_cast<double>(t) + 0.5) / rate - begin, duration));
-  c = closure * shut_eyes(model, *this).transpose();
+  c = closure * shut_eyes(model, eyes).transpose();
   return out;
 }
 
@@ -97,10 +118,10 @@ void describe(Description<MakeEyes>& d) {
   d.param("reach", &MakeEyes::reach)
       .positive()
       .doc("how far lids shut, standard deviations of the gap between them in the model; they stop where they meet");
-  d.param("points", &MakeEyes::points).at_least(0).doc("landmarks of the eyes; iBUG: 36 to 47");
-  d.param("nose", &MakeEyes::nose)
+  d.param("points", &MakeEyes::points)
       .at_least(0)
-      .doc("landmarks that go with them, so that proportions stay; iBUG: 27 to 35");
+      .doc("landmarks of the eyes; empty: they, the nose and the lids are those of the point scheme");
+  d.param("nose", &MakeEyes::nose).at_least(0).doc("landmarks that go with them, so that proportions stay");
   d.param("upper_lids", &MakeEyes::upper_lids).at_least(0).doc("landmarks on the upper lids");
   d.param("lower_lids", &MakeEyes::lower_lids).at_least(0).doc("landmarks below those, in the same order");
 }

@@ -29,12 +29,10 @@ struct MakeEyes {
   double duration = 0.3;  ///< of a blink, seconds
   double reach = 4;       ///< of shutting lids, standard deviations of the gap between them
 
-  /// Landmarks of the eyes, and those carried along (iBUG).
-  std::vector<int> points = {36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47};
-  std::vector<int> nose = {27, 28, 29, 30, 31, 32, 33, 34, 35};
-  /// On the upper lids, and below those in their order (iBUG).
-  std::vector<int> upper_lids = {37, 38, 43, 44};
-  std::vector<int> lower_lids = {41, 40, 47, 46};
+  std::vector<int> points;      ///< of the eyes; empty: they, the nose and the lids are the point scheme's
+  std::vector<int> nose;        ///< carried along with the eyes
+  std::vector<int> upper_lids;  ///< from corner to corner
+  std::vector<int> lower_lids;  ///< below those, in their order
 
   Eyes operator()(const AppearanceModel& model, const Track& parameters, const Track* given, Random& random) const;
 };

@@ -9,6 +9,7 @@
 #include "nodes/face/mouth_region.h"
 #include "nodes/face/sampling.h"
 #include "nodes/face/shapes.h"
+#include "nodes/types/scheme.h"
 
 namespace talkgraph {
 namespace {
@@ -46,6 +47,14 @@ std::vector<Frame> some(const std::vector<Frame>& all, int limit) {
   return chosen;
 }
 
+std::vector<int> lips(const AppearanceModel& model) {
+  const auto scheme = scheme_of(model.scheme, model.points());
+  auto points = scheme.named("outer_lips");
+  const auto inner = scheme.named("inner_lips");
+  points.insert(points.end(), inner.begin(), inner.end());
+  return points;
+}
+
 /// What a frame shows at the mouth, in the model's average light.
 cv::Mat picture_of(const AppearanceModel& model, const MouthRegion& region, const cv::Mat& frame,
                    const FaceTrack& track, std::size_t t) {
@@ -64,8 +73,9 @@ cv::Mat picture_of(const AppearanceModel& model, const MouthRegion& region, cons
 
 Mouths KeepMouths::operator()(const AppearanceModel& model, const Collected<Video>& videos,
                               const Collected<FaceTrack>& tracks, Context& context) const {
-  const auto region = mouth_region(model, points, margin);
-  Mouths out{points, margin, Eigen::MatrixXd(0, model.modes()), {}};
+  const auto around = points.empty() ? lips(model) : points;
+  const auto region = mouth_region(model, around, margin);
+  Mouths out{around, margin, Eigen::MatrixXd(0, model.modes()), {}};
   const auto frames = some(good_frames(model, videos, tracks, leave_out), limit);
   out.parameters.resize(static_cast<Eigen::Index>(frames.size()), model.modes());
   std::unique_ptr<VideoSource::Reader> reader;
@@ -96,7 +106,9 @@ void describe(Description<KeepMouths>& d) {
       .input("videos", "clips")
       .input("tracks", "of the clips")
       .output("mouths", "pictures warped to the mean shape, with their appearance parameters");
-  d.param("points", &KeepMouths::points).at_least(0).doc("landmarks around the mouth; iBUG: 48 to 67");
+  d.param("points", &KeepMouths::points)
+      .at_least(0)
+      .doc("landmarks around the mouth; empty: outer and inner lips of the point scheme");
   d.param("margin", &KeepMouths::margin)
       .within(0, 2)
       .doc("skin around them that belongs to it, share of the mouth's width");

@@ -10,13 +10,13 @@ namespace talkgraph {
 
 /// Keeps real mouths of the training clips, for synthesised faces to show: evenly spread over all frames but lost ones
 /// and the worst fitted share. With no frame to take, there are no mouths.
-/// Throws std::runtime_error if the model lacks a point or a track was made with another model.
+/// Throws std::runtime_error if the model lacks a point, or the scheme the lips, or a track was made with another
+/// model.
 struct KeepMouths {
-  std::vector<int> points = {48, 49, 50, 51, 52, 53, 54, 55, 56, 57,
-                             58, 59, 60, 61, 62, 63, 64, 65, 66, 67};  ///< around the mouth (iBUG: 48 to 67)
-  double margin = 0.2;     ///< of skin around them, share of the mouth's width
-  int limit = 600;         ///< mouths kept at most
-  double leave_out = 0.1;  ///< share of the frames, those of the largest residuals
+  std::vector<int> points;  ///< around the mouth; empty: outer and inner lips of the point scheme
+  double margin = 0.2;      ///< of skin around them, share of the mouth's width
+  int limit = 600;          ///< mouths kept at most
+  double leave_out = 0.1;   ///< share of the frames, those of the largest residuals
 
   Mouths operator()(const AppearanceModel& model, const Collected<Video>& videos, const Collected<FaceTrack>& tracks,
                     Context& context) const;

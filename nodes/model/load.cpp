@@ -12,7 +12,8 @@ void describe(Description<LoadModel>& d) {
       .output("base", &TalkingFace::base, "what synthesised faces are drawn upon")
       .output("contexts", &TalkingFace::contexts, "phonetic contexts");
   d.output("states", &TalkingFace::states, "the switching model")
-      .output("mean", &TalkingFace::mean, "mean visual parameters, 1 x D");
+      .output("mean", &TalkingFace::mean, "mean visual parameters, 1 x D")
+      .output("mouths", &TalkingFace::mouths, "real mouths for the face to show; may be none");
   d.param("file", &LoadModel::file).doc("model file written by model.save");
 }
 

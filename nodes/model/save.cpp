@@ -6,9 +6,9 @@
 namespace talkgraph {
 
 Artifact SaveModel::operator()(const AppearanceModel& face, const BaseClip& base, const Vlmm& contexts,
-                               const Ssgpdm& states, const Track& mean, const Provenance& made,
+                               const Ssgpdm& states, const Track& mean, const Mouths* mouths, const Provenance& made,
                                Context& context) const {
-  TalkingFace all{face, base, contexts, states, mean, speak.json};
+  TalkingFace all{face, base, contexts, states, mean, mouths ? *mouths : Mouths{}, speak.json};
   std::string format = model_format;
   write_hdf5(context.file(name), [&](Archive& ar) {
     note(ar, made);
@@ -24,7 +24,8 @@ void describe(Description<SaveModel>& d) {
       .input("base", "what synthesised faces are drawn upon")
       .input("contexts", "phonetic contexts")
       .input("states", "the switching model")
-      .input("mean", "mean visual parameters, 1 x D");
+      .input("mean", "mean visual parameters, 1 x D")
+      .input("mouths", "real mouths for the face to show");
   d.output("file", "the model file");
   d.param("name", &SaveModel::name).doc("file below the run folder");
   d.param("speak", &SaveModel::speak).doc("graph that speaks with the model; kept in the file, resolved");

@@ -12,12 +12,12 @@ struct SaveModel {
   GraphText speak;                ///< graph with the nodes `recordings` and `model`, which `talkgraph speak` sets
 
   Artifact operator()(const AppearanceModel& face, const BaseClip& base, const Vlmm& contexts, const Ssgpdm& states,
-                      const Track& mean, const Provenance& made, Context& context) const;
+                      const Track& mean, const Mouths* mouths, const Provenance& made, Context& context) const;
 };
 void describe(Description<SaveModel>& d);
 
 /// The format marker in every model file.
-inline constexpr const char* model_format = "talkgraph model 2";
+inline constexpr const char* model_format = "talkgraph model 3";
 
 /// Throws std::runtime_error if the file is missing, foreign or damaged.
 TalkingFace load_model(const std::string& file);

@@ -8,6 +8,7 @@ void fields(Archive& ar, TalkingFace& f) {
   ar("contexts", f.contexts);
   ar("states", f.states);
   ar("mean", f.mean);
+  ar("mouths", f.mouths);
   ar("speak", f.speak);
 }
 

@@ -5,6 +5,7 @@
 
 #include "nodes/types/appearance_model.h"
 #include "nodes/types/base_clip.h"
+#include "nodes/types/mouths.h"
 #include "nodes/types/ssgpdm.h"
 #include "nodes/types/track.h"
 #include "nodes/types/vlmm.h"
@@ -18,10 +19,11 @@ struct TalkingFace {
   Vlmm contexts;
   Ssgpdm states;
   Track mean;         ///< 1 × D: mean visual parameters of the training clips
+  Mouths mouths;      ///< real ones for the face to show; may be none
   std::string speak;  ///< the graph that speaks with these, resolved, as JSON
 };
 template <>
-inline constexpr PortType port_type<TalkingFace>{"TalkingFace", 1};
+inline constexpr PortType port_type<TalkingFace>{"TalkingFace", 2};
 void fields(Archive& ar, TalkingFace& f);
 
 }  // namespace talkgraph

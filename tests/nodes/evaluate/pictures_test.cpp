@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "graph/random.h"
+#include "nodes/types/scheme.h"
 
 namespace talkgraph {
 namespace {
@@ -115,12 +116,33 @@ TEST(ComparePictures, LeavesDamagedFramesOut) {
   EXPECT_FALSE(node(video({}), video({}), {}));
 }
 
+TEST(ComparePictures, LeavesOutFramesWithoutLandmarks) {
+  auto some = points();
+  some.frames[0] = Shape(0, 2);
+  auto broken = recorded_frames();
+  broken[0].setTo(0);
+  EXPECT_EQ(node(video(recorded_frames()), video(broken), some)->values.at("psnr_face"), 100);
+}
+
+TEST(ComparePictures, KnowsTheLipsOfAScheme) {
+  LandmarkTrack face{std::vector<Shape>(frames, Shape(10 + 0.5 * (find_scheme("ibug68")->mean.array() + 70))),
+                     Rational(25), "ibug68"};
+  const std::vector<int> outer = {48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59},
+                         inner = {60, 61, 62, 63, 64, 65, 66, 67};
+  const Video recorded = video(recorded_frames()),
+              drawn = video(changed([](cv::Mat&f) { cv::GaussianBlur(f, f, {}, 1); }));
+  const auto by_name = ComparePictures{}(recorded, drawn, face)->values,
+             by_number = ComparePictures{outer, inner}(recorded, drawn, face)->values;
+  for (const char* score : {"psnr_mouth", "ssim_mouth", "jumps"}) EXPECT_EQ(by_name.at(score), by_number.at(score));
+}
+
 TEST(ComparePictures, RefusesWhatCannotBeCompared) {
   const Video recorded = video(recorded_frames());
   EXPECT_THROW(node(recorded, video(std::vector<cv::Mat>(frames, cv::Mat(50, 50, CV_8UC3))), points()),
                std::runtime_error);
   EXPECT_THROW(node(recorded, video({recorded_frames()[0]}), points()), std::runtime_error);
-  EXPECT_THROW(ComparePictures{}(recorded, recorded, points()), std::runtime_error);
+  EXPECT_THROW((ComparePictures{{4, 99}, {8}}(recorded, recorded, points())), std::runtime_error);
+  EXPECT_THROW(ComparePictures{}(recorded, recorded, points()), std::runtime_error);  // no scheme of 12 points
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "nodes/face/render.h"
 #include "nodes/face/select_mouths.h"
 #include "nodes/face/track.h"
+#include "nodes/types/scheme.h"
 #include "synthetic_face.h"
 #include "tests/temporary_folder.h"
 
@@ -158,6 +159,30 @@ TEST(Eyes, ShutOnesAreTheLikeliest) {
   }
 }
 
+TEST(Eyes, AreFoundByThePointScheme) {
+  AppearanceModel m;
+  m.scheme = "ibug68";
+  m.mean_shape = find_scheme("ibug68")->mean;
+  m.combined_variances = Eigen::VectorXd::Ones(1);
+  m.shape_per_mode = Eigen::MatrixXd::Zero(136, 1);
+  MakeEyes node;
+  node.source = EyeSource::still;
+  const Track track{Eigen::MatrixXd::Zero(2, 1), Rational(25), 0.02, {}};
+  const auto eyes = make(node, m, track);
+  EXPECT_EQ(eyes.points, (std::vector<int>{36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47}));
+  EXPECT_EQ(eyes.nose, (std::vector<int>{27, 28, 29, 30, 31, 32, 33, 34, 35}));
+  double gap = 0;
+  for (const auto& [upper, lower] : {std::pair{37, 41}, {38, 40}, {43, 47}, {44, 46}}) {
+    gap += m.mean_shape(lower, 1) - m.mean_shape(upper, 1);
+    m.shape_per_mode(2 * upper + 1, 0) = 1;  // a unit of c brings each upper lid down by one
+  }
+  node.source = EyeSource::blinking;
+  node.interval = 0.4;
+  node.reach = 1000;
+  const Track longer{Eigen::MatrixXd::Zero(1000, 1), Rational(1000), 0, {}};
+  EXPECT_NEAR(make(node, m, longer).parameters.values.maxCoeff(), gap / 4, 0.01 * gap);
+}
+
 TEST(LidClosure, GoesDownFasterThanUp) {
   EXPECT_EQ(lid_closure(-0.1, 0.3), 0);
   EXPECT_EQ(lid_closure(0.3, 0.3), 0);
@@ -182,12 +207,15 @@ TEST(Eyes, SayWhatTheyLack) {
   EXPECT_THAT(error(eyes_from(EyeSource::blinking)), testing::HasSubstr("lids never move"));
   MakeEyes of_other_points;
   of_other_points.source = EyeSource::still;
+  EXPECT_THAT(error(of_other_points), testing::HasSubstr("synthetic"));
+  of_other_points.points = {16, 36};
   EXPECT_THAT(error(of_other_points), testing::HasSubstr("has 36 points and so no point 36"));
+  of_other_points.points = {16, 20};
+  of_other_points.source = EyeSource::blinking;
+  EXPECT_THAT(error(of_other_points), testing::HasSubstr("name the landmarks of the lids"));
   auto node = eyes_from(EyeSource::still);
   node.lower_lids.pop_back();
   EXPECT_THAT(error(node), testing::HasSubstr("2 points of upper lids, but 1"));
-  node.points.clear();
-  EXPECT_THAT(error(node), testing::HasSubstr("name the landmarks of the eyes"));
 }
 
 TEST(Looks, ShowTheEyesOfOthersInABandAndTheirPointsAligned) {
@@ -336,9 +364,11 @@ TEST(KeepMouths, LeavesOutLostFramesAndTheWorstFitted) {
 
 TEST(KeepMouths, NamesThePointThatIsMissing) {
   Context context;
-  EXPECT_THAT(complaint([&] { KeepMouths{}(model(), {}, {}, context); }),
-              testing::HasSubstr("has 36 points and so no point 48"));
+  EXPECT_THAT(complaint([&] { KeepMouths{}(model(), {}, {}, context); }), testing::HasSubstr("synthetic"));
   KeepMouths node;
+  node.points = {28, 32, 48};
+  EXPECT_THAT(complaint([&] { node(model(), {}, {}, context); }),
+              testing::HasSubstr("has 36 points and so no point 48"));
   node.points = {28, 32};
   EXPECT_THAT(complaint([&] { node(model(), {}, {}, context); }), testing::HasSubstr("span no area"));
 }

@@ -30,17 +30,29 @@ class ModelFile : public testing::Test {
   Vlmm contexts;
   Ssgpdm states;
   Track mean;
+  Mouths mouths{{3, 4},
+                0.2,
+                Eigen::MatrixXd::Ones(2, 3),
+                {{cv::Mat(2, 4, CV_8UC3, cv::Scalar(1, 2, 3))}, {cv::Mat(2, 4, CV_8UC3, cv::Scalar(4, 5, 6))}}};
 };
 
 TEST_F(ModelFile, ComesBackInItsParts) {
   const SaveModel save{"model.h5", {"{\"nodes\": {}}"}};
-  EXPECT_EQ(save(face, base, contexts, states, mean, {}, context).path, "model.h5");
+  EXPECT_EQ(save(face, base, contexts, states, mean, &mouths, {}, context).path, "model.h5");
   EXPECT_FALSE(std::filesystem::exists(file() + ".part"));
   const TalkingFace back = LoadModel{{file()}}();
   EXPECT_EQ(back.contexts.alphabet, contexts.alphabet);
   EXPECT_EQ(back.mean.values, mean.values);
+  ASSERT_EQ(back.mouths.pictures.size(), 2u);
+  EXPECT_EQ(back.mouths.pictures[1].pixels.at<cv::Vec3b>(1, 2), cv::Vec3b(4, 5, 6));
+  EXPECT_EQ(back.mouths.points, mouths.points);
   EXPECT_EQ(back.base.frames.read_all().at(0).at<cv::Vec3b>(3, 5), cv::Vec3b(1, 2, 3));
   EXPECT_EQ(model_graph(file()), "{\"nodes\": {}}");
+}
+
+TEST_F(ModelFile, NeedsNoMouths) {
+  SaveModel{}(face, base, contexts, states, mean, nullptr, {}, context);
+  EXPECT_EQ(load_model(file()).mouths.size(), 0);
 }
 
 TEST_F(ModelFile, SaysWhatIsWrongWithAFile) {
@@ -59,7 +71,7 @@ TEST_F(ModelFile, SaysWhatIsWrongWithAFile) {
   std::string format = "talkgraph model 99";
   write_hdf5(file(), [&](Archive& ar) { ar("format", format); });
   EXPECT_THAT(complaint(), HasSubstr("\"talkgraph model 99\""));
-  SaveModel{}(face, base, contexts, states, mean, {}, context);
+  SaveModel{}(face, base, contexts, states, mean, nullptr, {}, context);
   std::filesystem::resize_file(file(), std::filesystem::file_size(file()) / 2);
   EXPECT_THAT(complaint(), HasSubstr("model.h5"));
 }
