@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <stdexcept>
 
-#include "nodes/face/fit.h"
 #include "nodes/face/geometry.h"
 #include "nodes/face/pca.h"
 #include "nodes/face/sampling.h"
@@ -56,16 +54,15 @@ struct Textures {
   std::vector<Photometry> photometry;
 };
 
-Textures sample_all(std::vector<Pyramid>& pictures, const std::vector<Shape>& shapes, const Triangles& triangles,
-                    const Raster& raster) {
+Textures sample_all(std::vector<Pyramid>& pictures, const std::vector<Shape>& shapes, const Sampler& sample) {
   Textures out;
-  out.columns.resize(3 * raster.size(), static_cast<Eigen::Index>(shapes.size()));
   Eigen::VectorXf texture;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    sample(pictures[i], shapes[i], triangles, raster, texture);
+    sample(pictures[i], shapes[i], texture);
     out.photometry.push_back(normalise(texture));
     if (out.photometry.back().gain == 0)
       throw std::runtime_error(fmt::format("prototype {} shows no face: its picture is flat inside the landmarks", i));
+    if (i == 0) out.columns.resize(texture.size(), static_cast<Eigen::Index>(shapes.size()));
     out.columns.col(static_cast<Eigen::Index>(i)) = texture.cast<double>();
   }
   return out;
@@ -77,46 +74,21 @@ SharedMatrix share(Eigen::MatrixXf matrix) { return std::make_shared<const Eigen
 /// by moving the shapes half a raster pixel both ways and averaged over the
 /// prototypes. `directions` are shape changes in the model frame, one a column.
 Eigen::MatrixXf texture_change(std::vector<Pyramid>& pictures, const Aligned& aligned,
-                               const Eigen::MatrixXd& directions, const Triangles& triangles, const Raster& raster,
+                               const Eigen::MatrixXd& directions, const Sampler& sample, double scale,
                                const std::vector<Photometry>& photometry) {
   const double points = static_cast<double>(aligned.mean.rows());
-  Eigen::MatrixXf change = Eigen::MatrixXf::Zero(3 * raster.size(), directions.cols());
+  Eigen::MatrixXf change;
   Eigen::VectorXf forth, back;
-  for (Eigen::Index j = 0; j < directions.cols(); ++j) {
-    const double h = 0.5 / raster.scale / (directions.col(j).norm() / std::sqrt(points));
-    const Shape step = unflatten(h * directions.col(j));
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-      sample(pictures[i], transform(aligned.poses[i], aligned.shapes[i] + step), triangles, raster, forth);
-      sample(pictures[i], transform(aligned.poses[i], aligned.shapes[i] - step), triangles, raster, back);
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    for (Eigen::Index j = 0; j < directions.cols(); ++j) {
+      const double h = 0.5 / scale / (directions.col(j).norm() / std::sqrt(points));
+      const Shape step = unflatten(h * directions.col(j));
+      sample(pictures[i], transform(aligned.poses[i], aligned.shapes[i] + step), forth);
+      sample(pictures[i], transform(aligned.poses[i], aligned.shapes[i] - step), back);
+      if (change.size() == 0) change.setZero(forth.size(), directions.cols());
       change.col(j) += (forth - back) * static_cast<float>(1 / (2 * h * photometry[i].gain));
     }
-  }
   return change / static_cast<float>(pictures.size());
-}
-
-/// Shape changes of small scaling, rotation and shifts of the mean shape.
-Eigen::MatrixXd pose_directions(const Shape& mean) {
-  Eigen::MatrixXd d(2 * mean.rows(), 4);
-  for (Eigen::Index i = 0; i < mean.rows(); ++i) {
-    d.row(2 * i) << mean(i, 0), -mean(i, 1), 1, 0;
-    d.row(2 * i + 1) << mean(i, 1), mean(i, 0), 0, 1;
-  }
-  return d;
-}
-
-/// Transposed pseudo-inverse of the Jacobian of (c, pose), blind to gain and
-/// offset, held by the prior variances of c against directions that the
-/// texture hardly shows.
-Eigen::MatrixXf update_matrix(Eigen::MatrixXf jacobian, const Eigen::VectorXf& mean, const Eigen::VectorXd& variances,
-                              double noise) {
-  const Eigen::VectorXf unit = mean.normalized();
-  jacobian.rowwise() -= Eigen::RowVectorXf(jacobian.colwise().mean());
-  jacobian -= unit * (unit.transpose() * jacobian);
-  Eigen::MatrixXd normal = (jacobian.transpose() * jacobian).cast<double>();
-  normal.diagonal().head(variances.size()) += noise * variances.cwiseInverse();
-  normal.diagonal().array() += 1e-9 * normal.diagonal().mean();
-  const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
-  return jacobian * inverse.cast<float>();
 }
 
 /// The rest of the model once shapes and textures have been reduced.
@@ -171,7 +143,7 @@ AppearanceModel BuildAppearance::operator()(const Prototypes& prototypes, Contex
 
   model.levels.resize(1);
   model.levels[0].raster = make_raster(model.mean_shape, model.triangles, 1);
-  const auto finest = sample_all(pictures, prototypes.shapes, model.triangles, model.levels[0].raster);
+  const auto finest = sample_all(pictures, prototypes.shapes, Sampler(model.levels[0].raster, model.triangles));
   const auto textures = pca(finest.columns, retain_texture);
   model.texture_modes = share(textures.modes.cast<float>());
   model.texture_variances = textures.variances;
@@ -192,13 +164,12 @@ AppearanceModel BuildAppearance::operator()(const Prototypes& prototypes, Contex
 
   Eigen::MatrixXd directions(2 * model.points(), model.shape_modes.cols() + 4);
   directions << model.shape_modes, pose_directions(model.mean_shape);
-  const auto shape_count = model.shape_modes.cols();
-  const Eigen::MatrixXf shape_share = (model.combined_modes.topRows(shape_count) / model.shape_weight).cast<float>();
   for (int l = 0; l < levels; ++l) {
     context.check_cancelled();
     if (l > 0) model.levels.push_back({make_raster(model.mean_shape, model.triangles, std::exp2(-l)), {}, {}, {}});
     auto& level = model.levels[static_cast<std::size_t>(l)];
-    const auto sampled = l > 0 ? sample_all(pictures, prototypes.shapes, model.triangles, level.raster) : finest;
+    const Sampler sample(level.raster, model.triangles);
+    const auto sampled = l > 0 ? sample_all(pictures, prototypes.shapes, sample) : finest;
     if (l > 0) {
       const Eigen::VectorXd mean = sampled.columns.rowwise().mean();
       level.mean = share(mean.cast<float>());
@@ -207,19 +178,14 @@ AppearanceModel BuildAppearance::operator()(const Prototypes& prototypes, Contex
                                 (static_cast<double>(count) * model.combined_variances).cwiseInverse().asDiagonal())
                                    .cast<float>());
     }
-    const auto change =
-        texture_change(pictures, aligned, directions, model.triangles, level.raster, sampled.photometry);
-    Eigen::MatrixXf jacobian(change.rows(), model.modes() + 4);
-    jacobian << change.leftCols(shape_count) * shape_share - *level.appearance, change.rightCols(4);
-    const double noise = std::pow(model.residual / model.texture_gain, 2);
-    level.update = share(update_matrix(std::move(jacobian), level.mean->col(0), model.combined_variances, noise));
+    level.change = share(texture_change(pictures, aligned, directions, sample, level.raster.scale, sampled.photometry));
     context.progress(0.3 + 0.7 * (l + 1) / levels);
   }
   return model;
 }
 
 void describe(Description<BuildAppearance>& d) {
-  d.type("face.build").version(1).summary("builds an active appearance model from pictures with landmarks");
+  d.type("face.build").version(2).summary("builds an active appearance model from pictures with landmarks");
   d.source("Thesis §3.1, §3.4, Eqns 3.11-3.21; docs/method.md §2").stored();
   d.input("prototypes", "pictures with landmarks").output("model", "shape, texture and their combined modes");
   d.param("width", &BuildAppearance::width)

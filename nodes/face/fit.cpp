@@ -7,26 +7,30 @@
 namespace talkgraph {
 namespace {
 
-Fit moved(const AppearanceModel& model, const Fit& from, const Eigen::VectorXf& step, double length, double limit) {
-  Fit to = from;
-  const auto modes = model.modes();
-  to.c -= length * step.head(modes).cast<double>();
-  const Eigen::ArrayXd bound = limit * model.combined_variances.array().sqrt();
-  to.c = to.c.array().min(bound).max(-bound);
-  to.pose = compose(from.pose, small_pose(-length * step.tail<4>().cast<double>()));
-  return to;
+constexpr int pose_parameters = 4;
+
+Eigen::Index shape_modes(const AppearanceModel& model) { return model.shape_modes.cols(); }
+
+void centre(Eigen::Ref<Eigen::MatrixXf> columns) {
+  const Eigen::RowVectorXf means = columns.colwise().mean();
+  columns.rowwise() -= means;
 }
 
-/// Correlation of the picture (model plus difference) with the model, each channel centred.
-double detail_likeness(const Eigen::VectorXf& expected, const Eigen::VectorXf& difference) {
-  using Channels = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
-  Channels model = Eigen::Map<const Channels>(expected.data(), expected.size() / 3, 3);
-  Channels picture = model + Eigen::Map<const Channels>(difference.data(), difference.size() / 3, 3);
-  model.rowwise() -= model.colwise().mean().eval();
-  picture.rowwise() -= picture.colwise().mean().eval();
-  const double sizes = static_cast<double>(model.norm()) * picture.norm();
-  return sizes > 0 ? model.cwiseProduct(picture).sum() / sizes : 0;
-}
+/// Sums over the pixels of each colour, and of all squares.
+struct Sums {
+  explicit Sums(const Eigen::VectorXf& texture) {
+    Eigen::Array3d squares = Eigen::Array3d::Zero();
+    const float* value = texture.data();
+    for (const float* const end = value + texture.size(); value != end; value += 3) {
+      const Eigen::Array3d pixel(value[0], value[1], value[2]);
+      colours += pixel;
+      squares += pixel.square();
+    }
+    square = squares.sum();
+  }
+  Eigen::Array3d colours = Eigen::Array3d::Zero();
+  double square = 0;
+};
 
 }  // namespace
 
@@ -34,45 +38,143 @@ Pose small_pose(const Eigen::Vector4d& q) {
   return {std::hypot(1 + q(0), q(1)), std::atan2(q(1), 1 + q(0)), q(2), q(3)};
 }
 
-void evaluate(const AppearanceModel& model, Pyramid& pyramid, std::size_t level, Fit& fit,
-              Eigen::VectorXf& difference) {
-  sample(pyramid, transform(fit.pose, model.shape(fit.c)), model.triangles, model.levels[level].raster, difference);
-  const auto photometry = normalise(difference);
-  const Eigen::VectorXf expected = model.texture(fit.c, level);
-  const double likeness = difference.dot(expected), size = expected.squaredNorm();
-  fit.offset = photometry.offset;
-  fit.error = 1;
-  fit.residual = photometry.gain / std::sqrt(static_cast<double>(difference.size()));
-  fit.gain = 0;
-  if (photometry.gain <= 0 || likeness <= 0) return;
-  fit.gain = photometry.gain * likeness / size;
-  fit.error = std::max(0.0, 1 - likeness * likeness / size);
-  fit.residual *= std::sqrt(fit.error);
-  difference = difference * static_cast<float>(size / likeness) - expected;
+Fitter::Fitter(const AppearanceModel& model, FitMethod method)
+    : model_(model), method_(method), modes_(model.modes()), textures_(1 + modes_) {
+  const auto shapes = shape_modes(model), moves = shapes + pose_parameters;
+  jacobian_.setZero(textures_ + moves, modes_ + pose_parameters);
+  jacobian_.block(1, 0, modes_, modes_).diagonal().setConstant(-1);
+  jacobian_.block(textures_, 0, shapes, modes_) = model.combined_modes.topRows(shapes) / model.shape_weight;
+  jacobian_.bottomRightCorner<pose_parameters, pose_parameters>().setIdentity();
+  for (const FitLevel& given : model.levels) {
+    Level level{Sampler(given.raster, model.triangles),
+                SteepestDescent(given.raster, model.triangles),
+                {},
+                {},
+                {},
+                {},
+                {},
+                1,
+                {}};
+    level.columns.resize(given.mean->rows(), textures_ + moves);
+    level.columns << *given.mean, *given.appearance, *given.change;
+    centre(level.columns.rightCols(moves));
+    level.gram = (level.columns.transpose() * level.columns).cast<double>();
+    level.colours.resize(textures_, 3);
+    for (Eigen::Index i = 0; i < textures_; ++i) level.colours.row(i) = Sums(level.columns.col(i)).colours;
+    find_normal(level, Eigen::VectorXd::Unit(textures_, 0));
+    levels_.push_back(std::move(level));
+  }
 }
 
-Fit fit(const AppearanceModel& model, Pyramid& pyramid, std::size_t level, const Fit& start,
-        const FitOptions& options) {
-  const auto& update = *model.levels[level].update;
+/// Of the columns in the model's texture.
+Eigen::VectorXd Fitter::weights(const Fit& fit) const {
+  Eigen::VectorXd w(textures_);
+  w << 1, fit.c;
+  return w;
+}
+
+void Fitter::find_normal(Level& level, const Eigen::VectorXd& weights) {
+  level.weights = weights;
+  level.along = level.gram.leftCols(textures_) * weights;
+  level.size = weights.dot(level.along.head(textures_));
+  const Eigen::MatrixXd blind = level.gram - level.along * level.along.transpose() / level.size;
+  Eigen::MatrixXd normal = jacobian_.transpose() * blind * jacobian_;
+  const double noise = std::pow(model_.residual / model_.texture_gain, 2);
+  normal.diagonal().head(modes_) += noise * model_.combined_variances.cwiseInverse();
+  normal.diagonal().array() += 1e-9 * normal.diagonal().mean();
+  level.normal.compute(normal);
+}
+
+void Fitter::linearise(Level& level, const Fit& at) {
+  const Eigen::VectorXd w = weights(at);
+  const Eigen::VectorXf texture = level.columns.leftCols(textures_) * w.cast<float>();
+  const Shape shape = model_.shape(at.c);
+  const auto moves = shape_modes(model_) + pose_parameters;
+  Eigen::MatrixXd directions(2 * model_.points(), moves);
+  directions << model_.shape_modes, pose_directions(shape);
+  auto change = level.columns.rightCols(moves);
+  level.descent(shape, directions, texture, change);
+  centre(change);
+  level.gram.bottomRows(moves) = (change.transpose() * level.columns).cast<double>();
+  level.gram.topRightCorner(textures_, moves) = level.gram.bottomLeftCorner(moves, textures_).transpose();
+  find_normal(level, w);
+}
+
+void Fitter::look(Pyramid& pyramid, Level& level, Fit& fit, Seen& seen) {
+  level.sample(pyramid, transform(fit.pose, model_.shape(fit.c)), seen.texture);
+  const Sums sums(seen.texture);
+  const auto values = static_cast<double>(seen.texture.size());
+  fit.offset = sums.colours.sum() / values;
+  seen.norm = std::sqrt(std::max(0.0, sums.square - values * fit.offset * fit.offset));
+  fit.error = 1;
+  fit.residual = seen.norm / std::sqrt(values);
+  fit.gain = fit.detail = 0;
+  if (seen.norm < 1e-3) return;
+  const Eigen::VectorXf products = level.columns.leftCols(textures_).transpose() * seen.texture;
+  seen.products = products.cast<double>() / seen.norm;
+  const Eigen::VectorXd w = weights(fit);
+  const double likeness = w.dot(seen.products), size = w.dot(level.gram.topLeftCorner(textures_, textures_) * w);
+  if (likeness <= 0) return;
+  fit.gain = seen.norm * likeness / size;
+  fit.error = std::max(0.0, 1 - likeness * likeness / size);
+  fit.residual *= std::sqrt(fit.error);
+  const Eigen::Array3d expected = (level.colours.transpose() * w).array();
+  const Eigen::Array3d picture = (sums.colours - fit.offset * values / 3) / seen.norm;
+  const double sizes = (size - 3 * expected.square().sum() / values) * (1 - 3 * picture.square().sum() / values);
+  if (sizes > 0) fit.detail = (likeness - 3 * (expected * picture).sum() / values) / std::sqrt(sizes);
+}
+
+Eigen::VectorXd Fitter::step(Level& level, const Fit& at, Seen& seen) const {
+  const auto moves = level.columns.cols() - textures_;
+  const Eigen::VectorXd w = weights(at);
+  const Eigen::VectorXf products = level.columns.rightCols(moves).transpose() * seen.texture;
+  Eigen::VectorXd difference(level.columns.cols());
+  difference << seen.products.head(textures_), products.cast<double>() / seen.norm;
+  const Eigen::VectorXd expected = level.gram.leftCols(textures_) * w;
+  difference *= w.dot(expected.head(textures_)) / w.dot(seen.products.head(textures_));
+  difference -= expected;
+  difference -= level.along * (level.weights.dot(difference.head(textures_)) / level.size);
+  return level.normal.solve(jacobian_.transpose() * difference);
+}
+
+Fit Fitter::moved(const Fit& from, const Eigen::VectorXd& step, double limit) const {
+  Fit to = from;
+  to.c -= step.head(modes_);
+  const Eigen::ArrayXd bound = limit * model_.combined_variances.array().sqrt();
+  to.c = to.c.array().min(bound).max(-bound);
+  to.pose = compose(from.pose, small_pose(-step.tail<pose_parameters>()));
+  return to;
+}
+
+void Fitter::evaluate(Pyramid& pyramid, std::size_t level, Fit& fit) {
+  look(pyramid, levels_.at(level), fit, best_seen_);
+}
+
+Fit Fitter::fit(Pyramid& pyramid, std::size_t level, const Fit& start, const FitOptions& options) {
+  Level& at = levels_.at(level);
   Fit best = start;
-  Eigen::VectorXf difference, trial_difference, step;
-  evaluate(model, pyramid, level, best, difference);
+  look(pyramid, at, best, best_seen_);
   for (int round = 0; round < options.iterations && best.gain > 0; ++round) {
-    step.noalias() = update.transpose() * difference;
+    if (method_ == FitMethod::inverse_compositional) linearise(at, best);
+    const Eigen::VectorXd full = step(at, best, best_seen_);
     const double before = best.error;
     for (const double length : {1.0, 1.5, 0.5, 0.25}) {
-      Fit trial = moved(model, best, step, length, options.limit);
-      evaluate(model, pyramid, level, trial, trial_difference);
+      Fit trial = moved(best, length * full, options.limit);
+      look(pyramid, at, trial, trial_seen_);
       if (trial.error < before) {
         best = std::move(trial);
-        difference.swap(trial_difference);
+        std::swap(best_seen_, trial_seen_);
         break;
       }
     }
     if (before - best.error <= options.tolerance * before) break;
   }
-  if (best.gain > 0) best.detail = detail_likeness(model.texture(best.c, level), difference);
   return best;
+}
+
+Fit Fitter::coarse_to_fine(Pyramid& pyramid, Fit start, const FitOptions& options) {
+  for (std::size_t level = levels_.size(); level-- > 0;) start = fit(pyramid, level, start, options);
+  return start;
 }
 
 }  // namespace talkgraph

@@ -1,6 +1,12 @@
 #pragma once
 
+#include <Eigen/Cholesky>
+#include <array>
+#include <optional>
+
+#include "graph/description.h"
 #include "nodes/face/sampling.h"
+#include "nodes/face/steepest_descent.h"
 #include "nodes/types/appearance_model.h"
 #include "nodes/types/face_track.h"
 
@@ -19,18 +25,66 @@ struct Fit {
 /// Pose of small changes (a, b, x, y) in the model frame: [1+a, -b; b, 1+a], then the shift.
 Pose small_pose(const Eigen::Vector4d& q);
 
-/// Texture error of a fit at one level: fills gain, offset, error and residual, and
-/// gives the normalised difference picture minus model.
-void evaluate(const AppearanceModel& model, Pyramid& pyramid, std::size_t level, Fit& fit, Eigen::VectorXf& difference);
+/// Where the derivative of the texture by shape and pose comes from: measured once on the prototypes, or the
+/// gradient of the model's own texture as it is.
+enum class FitMethod { fixed_jacobian, inverse_compositional };
+template <>
+inline constexpr EnumNames<FitMethod, 2> enum_names<FitMethod>{
+    {{FitMethod::fixed_jacobian, "fixed_jacobian"}, {FitMethod::inverse_compositional, "inverse_compositional"}}};
 
-/// Fixed-Jacobian fit at one level (Algorithm 1): δ = -R δg, steps 1, 1.5, 0.5, 0.25; it ends
-/// when no step lowers the error or the gain is below `tolerance` (relative).
-/// Parameters are kept within `limit` standard deviations.
 struct FitOptions {
-  int iterations = 10;
-  double tolerance = 1e-3;
-  double limit = 4;
+  int iterations = 10;      ///< at most, per level
+  double tolerance = 1e-3;  ///< relative gain under which a fit ends
+  double limit = 4;         ///< of the parameters, standard deviations
 };
-Fit fit(const AppearanceModel& model, Pyramid& pyramid, std::size_t level, const Fit& start, const FitOptions& options);
+
+/// Fits a model to pictures (Algorithm 1, docs/method.md §2). It refers to the model and keeps
+/// what it works with, so that each thread needs its own; results depend on the arguments alone.
+class Fitter {
+ public:
+  explicit Fitter(const AppearanceModel& model, FitMethod method = FitMethod::fixed_jacobian);
+
+  /// At one level: δ = -R δg, steps 1, 1.5, 0.5, 0.25; it ends when no step lowers the error or the gain is below
+  /// the tolerance.
+  Fit fit(Pyramid& pyramid, std::size_t level, const Fit& start, const FitOptions& options = {});
+  /// At all levels, the coarsest first.
+  Fit coarse_to_fine(Pyramid& pyramid, Fit start, const FitOptions& options = {});
+  /// Fills in how well a fit fits at one level: everything but c and pose.
+  void evaluate(Pyramid& pyramid, std::size_t level, Fit& fit);
+
+ private:
+  /// One level of the model: columns that span its textures and their changes, [mean, appearance, change].
+  struct Level {
+    Sampler sample;
+    SteepestDescent descent;
+    Eigen::MatrixXf columns;
+    Eigen::MatrixXd gram;                ///< inner products of the columns
+    Eigen::MatrixX3d colours;            ///< sum of each column over the pixels of a colour
+    Eigen::VectorXd weights;             ///< of the columns in the texture at which the level is linearised
+    Eigen::VectorXd along;               ///< products of that texture with the columns
+    double size = 1;                     ///< its squared norm
+    Eigen::LLT<Eigen::MatrixXd> normal;  ///< JᵀJ with the prior, J blind to gain and offset
+  };
+  /// A picture's texture inside a shape.
+  struct Seen {
+    Eigen::VectorXf texture;
+    double norm = 0;
+    Eigen::VectorXd products;  ///< of the normalised texture with the level's columns
+  };
+
+  Eigen::VectorXd weights(const Fit& fit) const;
+  void look(Pyramid& pyramid, Level& level, Fit& fit, Seen& seen);
+  void linearise(Level& level, const Fit& at);
+  void find_normal(Level& level, const Eigen::VectorXd& weights);
+  Eigen::VectorXd step(Level& level, const Fit& at, Seen& seen) const;
+  Fit moved(const Fit& from, const Eigen::VectorXd& step, double limit) const;
+
+  const AppearanceModel& model_;
+  FitMethod method_;
+  Eigen::Index modes_, textures_;  ///< parameters c; columns of textures: 1 + modes
+  Eigen::MatrixXd jacobian_;       ///< J in terms of the columns, one a parameter (c and pose)
+  std::vector<Level> levels_;
+  Seen best_seen_, trial_seen_;
+};
 
 }  // namespace talkgraph

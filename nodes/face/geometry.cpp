@@ -84,6 +84,15 @@ Pose compose(const Pose& outer, const Pose& inner) {
           b * inner.dx + a * inner.dy + outer.dy};
 }
 
+Eigen::MatrixXd pose_directions(const Shape& shape) {
+  Eigen::MatrixXd d(2 * shape.rows(), 4);
+  for (Eigen::Index i = 0; i < shape.rows(); ++i) {
+    d.row(2 * i) << shape(i, 0), -shape(i, 1), 1, 0;
+    d.row(2 * i + 1) << shape(i, 1), shape(i, 0), 0, 1;
+  }
+  return d;
+}
+
 Pose align(const Shape& from, const Shape& to, const Eigen::VectorXd& weights) {
   const double total = weights.sum();
   const Eigen::RowVector2d from_mean = weights.transpose() * from / total, to_mean = weights.transpose() * to / total;

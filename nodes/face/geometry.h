@@ -15,6 +15,9 @@ Shape transform(const Pose& pose, const Shape& shape);
 /// The pose that applies `inner` first.
 Pose compose(const Pose& outer, const Pose& inner);
 
+/// Moves of the points under small changes of pose: scaling, rotation and the two shifts, a column each (2n × 4).
+Eigen::MatrixXd pose_directions(const Shape& shape);
+
 /// Similarity that carries `from` closest to `to` in (weighted) least squares.
 /// Points that all coincide give a translation.
 Pose align(const Shape& from, const Shape& to, const Eigen::VectorXd& weights);

@@ -9,31 +9,58 @@
 namespace talkgraph {
 namespace {
 
-/// Bilinear value of the three channels, borders repeated.
-inline void bilinear(const float* pixels, std::ptrdiff_t step, int width, int height, float x, float y, float* out) {
-  x = std::min(std::max(x, 0.f), static_cast<float>(width - 1));
-  y = std::min(std::max(y, 0.f), static_cast<float>(height - 1));
-  const int x0 = std::min(static_cast<int>(x), std::max(width - 2, 0)),
-            y0 = std::min(static_cast<int>(y), std::max(height - 2, 0));
-  const float u = x - static_cast<float>(x0), v = y - static_cast<float>(y0);
-  const float* top = pixels + y0 * step + 3 * x0;
-  const float* bottom = height > 1 ? top + step : top;
-  const int right = width > 1 ? 3 : 0;
-  for (int c = 0; c < 3; ++c) {
-    const float upper = top[c] + u * (top[c + right] - top[c]);
-    const float lower = bottom[c] + u * (bottom[c + right] - bottom[c]);
-    out[c] = upper + v * (lower - upper);
+double spread(const Shape& shape) { return (shape.rowwise() - shape.colwise().mean()).norm(); }
+
+/// A float picture of three channels.
+struct Pixels {
+  explicit Pixels(const cv::Mat& picture)
+      : data(picture.ptr<float>()),
+        step(static_cast<std::ptrdiff_t>(picture.step1())),
+        right(static_cast<float>(picture.cols - 1)),
+        bottom(static_cast<float>(picture.rows - 1)),
+        last_x(std::max(picture.cols - 2, 0)),
+        last_y(std::max(picture.rows - 2, 0)),
+        beside(picture.cols > 1 ? 3 : 0),
+        below(picture.rows > 1 ? step : 0) {}
+
+  bool hold(const Eigen::Array2f& p) const { return p.x() >= 0 && p.y() >= 0 && p.x() <= right && p.y() <= bottom; }
+
+  /// Bilinear value at a position inside the picture: three channels, and a fourth number that means nothing.
+  Eigen::Array4f at(const Eigen::Array2f& p) const {
+    using Pixel = Eigen::Map<const Eigen::Array4f>;
+    const float x = p.x(), y = p.y();
+    const int x0 = std::min(static_cast<int>(x), last_x), y0 = std::min(static_cast<int>(y), last_y);
+    const float u = x - static_cast<float>(x0), v = y - static_cast<float>(y0);
+    const float* top = data + y0 * step + 3 * x0;
+    const float* low = top + below;
+    const Eigen::Array4f upper = Pixel(top) + u * (Pixel(top + beside) - Pixel(top));
+    const Eigen::Array4f lower = Pixel(low) + u * (Pixel(low + beside) - Pixel(low));
+    return upper + v * (lower - upper);
   }
-}
+
+  Eigen::Array4f at_border(const Eigen::Array2f& p) const {
+    return at({std::min(std::max(p.x(), 0.f), right), std::min(std::max(p.y(), 0.f), bottom)});
+  }
+
+  const float* data;
+  std::ptrdiff_t step;
+  float right, bottom;
+  int last_x, last_y;
+  std::ptrdiff_t beside, below;
+};
+
+/// Room for a picture in whose last pixel four floats can be read.
+cv::Mat roomy(cv::Size size) { return cv::Mat(size.height + 1, size.width, CV_32FC3).rowRange(0, size.height); }
 
 }  // namespace
 
-Pyramid::Pyramid(const cv::Mat& picture) : levels_(1) { picture.convertTo(levels_[0], CV_32FC3); }
+Pyramid::Pyramid(const cv::Mat& picture) : levels_{roomy(picture.size())} { picture.convertTo(levels_[0], CV_32FC3); }
 
 const cv::Mat& Pyramid::level(int k) {
   while (static_cast<int>(levels_.size()) <= k) {
-    cv::Mat half;
-    cv::pyrDown(levels_.back(), half);
+    const cv::Mat& last = levels_.back();
+    cv::Mat half = roomy({(last.cols + 1) / 2, (last.rows + 1) / 2});
+    cv::pyrDown(last, half);
     levels_.push_back(half);
   }
   return levels_[static_cast<std::size_t>(k)];
@@ -44,21 +71,47 @@ int Pyramid::level_for(double pixels) {
   return std::clamp(static_cast<int>(std::lround(std::log2(std::max(pixels, 1e-6)))), 0, deepest);
 }
 
-void sample(Pyramid& pyramid, const Shape& shape, const Triangles& triangles, const Raster& raster,
-            Eigen::VectorXf& texture) {
-  const double spread = (shape.rowwise() - shape.colwise().mean()).norm();
-  const double raster_spread = (raster.points.rowwise() - raster.points.colwise().mean()).norm();
-  const int k = pyramid.level_for(spread / raster_spread);
-  const cv::Mat& picture = pyramid.level(k);
-  const auto maps = affine_maps(raster.points, shape / std::exp2(k), triangles);
-  texture.resize(3 * raster.size());
-  const auto* pixels = picture.ptr<float>();
-  const auto step = static_cast<std::ptrdiff_t>(picture.step1());
+std::vector<Run> runs(const Raster& raster) {
+  std::vector<Run> out;
+  for (std::size_t i = 0; i < raster.x.size(); ++i) {
+    const int x = raster.x[i], y = raster.y[i], triangle = raster.triangle[i];
+    if (!out.empty() && out.back().y == y && out.back().triangle == triangle && out.back().x + out.back().length == x)
+      ++out.back().length;
+    else
+      out.push_back({x, y, triangle, 1});
+  }
+  return out;
+}
+
+Sampler::Sampler(const Raster& raster, const Triangles& triangles)
+    : points_(raster.points),
+      spread_(spread(raster.points)),
+      triangles_(triangles),
+      runs_(runs(raster)),
+      size_(raster.size()) {}
+
+void Sampler::operator()(Pyramid& pyramid, const Shape& shape, Eigen::VectorXf& texture) const {
+  const int k = pyramid.level_for(spread(shape) / spread_);
+  const Pixels pixels(pyramid.level(k));
+  const auto maps = affine_maps(points_, shape / std::exp2(k), triangles_);
+  texture.resize(3 * size_);
   float* out = texture.data();
-  for (std::size_t i = 0; i < raster.x.size(); ++i, out += 3) {
-    const Affine& m = maps[static_cast<std::size_t>(raster.triangle[i])];
-    const auto x = static_cast<float>(raster.x[i]), y = static_cast<float>(raster.y[i]);
-    bilinear(pixels, step, picture.cols, picture.rows, m.a * x + m.b * y + m.c, m.d * x + m.e * y + m.f, out);
+  float* const last_pixel = out + 3 * (size_ - 1);
+  for (const Run& run : runs_) {
+    const Affine& m = maps[static_cast<std::size_t>(run.triangle)];
+    const auto y = static_cast<float>(run.y);
+    const auto at = [&, x0 = m.b * y + m.c, y0 = m.e * y + m.f](int i) {
+      const auto x = static_cast<float>(run.x + i);
+      return Eigen::Array2f(m.a * x + x0, m.d * x + y0);
+    };
+    const bool inside = pixels.hold(at(0)) && pixels.hold(at(run.length - 1));
+    for (int i = 0; i < run.length; ++i, out += 3) {
+      const Eigen::Array4f value = inside ? pixels.at(at(i)) : pixels.at_border(at(i));
+      if (out != last_pixel)
+        Eigen::Map<Eigen::Array4f>{out} = value;
+      else
+        Eigen::Map<Eigen::Array3f>{out} = value.head<3>();
+    }
   }
 }
 

@@ -22,11 +22,27 @@ class Pyramid {
   std::vector<cv::Mat> levels_;
 };
 
-/// Warps the picture inside a shape (picture coordinates) onto the raster:
+/// Pixels of a raster that lie side by side in one triangle.
+struct Run {
+  int x, y, triangle, length;
+};
+std::vector<Run> runs(const Raster& raster);
+
+/// Warps the picture inside a shape (picture coordinates) onto a raster:
 /// piecewise affine, bilinear, taken from the level of the pyramid that fits
 /// the raster's resolution. Outside the picture its border pixels are repeated.
-void sample(Pyramid& pyramid, const Shape& shape, const Triangles& triangles, const Raster& raster,
-            Eigen::VectorXf& texture);
+class Sampler {
+ public:
+  Sampler(const Raster& raster, const Triangles& triangles);
+  void operator()(Pyramid& pyramid, const Shape& shape, Eigen::VectorXf& texture) const;
+
+ private:
+  Shape points_;
+  double spread_;
+  Triangles triangles_;
+  std::vector<Run> runs_;
+  Eigen::Index size_;
+};
 
 /// A texture as a picture of the raster; `fill` where there is no face.
 cv::Mat raster_picture(const Raster& raster, const Eigen::VectorXf& texture, cv::Scalar fill = {});

@@ -20,35 +20,39 @@ class Tracker {
   Tracker(const TrackFace& settings, const AppearanceModel& model)
       : settings_(settings),
         model_(model),
+        fitter_(model, settings.fitter),
         options_{settings.iterations, settings.tolerance, FitOptions{}.limit},
         threshold_(settings.lost_above * std::max(model.residual, 4.0 / 3) / model.texture_gain) {}
 
-  /// The residual counts in the model's own light: a ghost of low contrast has a small one in grey levels.
-  bool good(const Fit& fit) const {
-    return fit.gain > least_contrast * model_.texture_gain && fit.detail > least_detail &&
-           fit.residual <= threshold_ * fit.gain;
+  /// How far the nearest bound of a good fit is away, 0 outside. The residual counts in the model's own light: a
+  /// ghost of low contrast has a small one in grey levels.
+  double confidence(const Fit& fit) const {
+    if (fit.gain <= 0) return 0;
+    const double margin =
+        std::min({1 - fit.residual / (threshold_ * fit.gain), 1 - least_contrast * model_.texture_gain / fit.gain,
+                  (fit.detail - least_detail) / (1 - least_detail)});
+    return std::clamp(margin, 0.0, 1.0);
   }
 
-  Fit follow(Pyramid& pyramid, const Fit& last) const { return refine(pyramid, last, model_.levels.size()); }
+  Fit follow(Pyramid& pyramid, const Fit& last) { return fitter_.coarse_to_fine(pyramid, last, options_); }
 
   /// The best of the fits that begin at the most promising windows.
-  std::optional<Fit> search(Pyramid& pyramid) const {
+  std::optional<Fit> search(Pyramid& pyramid) {
     std::vector<Fit> fits;
     for (const auto& window : search_windows(model_, pyramid, settings_.scale_range, settings_.candidates))
-      fits.push_back(fit(model_, pyramid, model_.levels.size() - 1, window, {3 * settings_.iterations, 1e-3, 3}));
+      fits.push_back(fitter_.fit(pyramid, model_.levels.size() - 1, window, {3 * settings_.iterations, 1e-3, 3}));
     if (fits.empty()) return {};
     const auto by_error = [](const Fit& a, const Fit& b) { return a.error < b.error; };
-    return refine(pyramid, *std::min_element(fits.begin(), fits.end(), by_error), model_.levels.size());
+    return follow(pyramid, *std::min_element(fits.begin(), fits.end(), by_error));
   }
+
+  /// How well a place that was not fitted fits.
+  void evaluate(Pyramid& pyramid, Fit& fit) { fitter_.evaluate(pyramid, 0, fit); }
 
  private:
-  Fit refine(Pyramid& pyramid, Fit at, std::size_t level) const {
-    while (level-- > 0) at = fit(model_, pyramid, level, at, options_);
-    return at;
-  }
-
   const TrackFace& settings_;
   const AppearanceModel& model_;
+  Fitter fitter_;
   FitOptions options_;
   double threshold_;
 };
@@ -94,8 +98,9 @@ void interpolate(std::vector<Fit>& fits, const std::vector<std::int64_t>& lost) 
 }
 
 FaceTrack to_track(const AppearanceModel& model, const std::vector<Fit>& fits, std::vector<std::int64_t> lost,
-                   Rational rate) {
+                   std::vector<double> confidence, Rational rate) {
   FaceTrack out;
+  out.confidence = std::move(confidence);
   out.lost = std::move(lost);
   out.parameters.rate = rate;
   out.parameters.start = 0.5 / rate.value();
@@ -114,12 +119,12 @@ FaceTrack to_track(const AppearanceModel& model, const std::vector<Fit>& fits, s
 }  // namespace
 
 FaceTrack TrackFace::operator()(const AppearanceModel& model, const Video& video, Context& context) const {
-  const Tracker tracker(*this, model);
+  Tracker tracker(*this, model);
   const Fit mean = mean_face(model, video.source->size());
   std::vector<Fit> fits;
   std::vector<std::int64_t> lost;
+  std::vector<double> confidence;
   std::optional<Fit> last;
-  Eigen::VectorXf difference;
   const auto reader = video.source->open();
   for (cv::Mat frame; reader->next(frame);) {
     context.check_cancelled();
@@ -127,13 +132,14 @@ FaceTrack TrackFace::operator()(const AppearanceModel& model, const Video& video
     Fit now = last.value_or(mean);
     const bool damaged = video.is_damaged(static_cast<std::int64_t>(fits.size()));
     if (damaged) {
-      evaluate(model, pyramid, 0, now, difference);
+      tracker.evaluate(pyramid, now);
     } else {
       if (last) now = tracker.follow(pyramid, *last);
-      if (!last || !tracker.good(now))
+      if (!last || tracker.confidence(now) == 0)
         if (auto found = tracker.search(pyramid); found && (!last || found->error < now.error)) now = *found;
     }
-    lost.push_back(damaged || !tracker.good(now));
+    confidence.push_back(damaged ? 0 : tracker.confidence(now));
+    lost.push_back(confidence.back() == 0);
     if (!lost.back()) last = now;
     fits.push_back(lost.back() ? mean : now);
     fits.back().residual = now.residual;
@@ -142,15 +148,19 @@ FaceTrack TrackFace::operator()(const AppearanceModel& model, const Video& video
   }
   if (fits.empty()) throw std::runtime_error(video.source->name() + ": no frame to track");
   interpolate(fits, lost);
-  return to_track(model, fits, std::move(lost), video.source->rate());
+  return to_track(model, fits, std::move(lost), std::move(confidence), video.source->rate());
 }
 
 void describe(Description<TrackFace>& d) {
-  d.type("face.track").version(1).summary("follows the face through a clip with the model alone");
+  d.type("face.track").version(2).summary("follows the face through a clip with the model alone");
   d.source("Thesis §3.1.4, Algorithm 1; docs/method.md §2").stored();
   d.input("model", "of the face")
       .input("video", "a clip of that speaker")
-      .output("track", "appearance parameters, pose and light of every frame, and which frames were lost");
+      .output("track", "appearance parameters, pose, light and confidence of every frame, and which frames were lost");
+  d.param("fitter", &TrackFace::fitter)
+      .doc(
+          "fixed_jacobian: the texture's derivative as measured on the prototypes (Algorithm 1); "
+          "inverse_compositional: from the gradient of the model's texture as it is at each step");
   d.param("lost_above", &TrackFace::lost_above)
       .positive()
       .doc(

@@ -2,6 +2,7 @@
 
 #include "graph/context.h"
 #include "graph/description.h"
+#include "nodes/face/fit.h"
 #include "nodes/types/appearance_model.h"
 #include "nodes/types/face_track.h"
 #include "nodes/types/video.h"
@@ -16,6 +17,7 @@ namespace talkgraph {
 /// with no good frame at all, the mean face in the middle of the picture.
 /// Throws std::runtime_error on a clip without frames. docs/method.md §2, Algorithm 1.
 struct TrackFace {
+  FitMethod fitter = FitMethod::fixed_jacobian;
   double lost_above = 6;     ///< residual at the prototypes' average light, in multiples of the model's own residual
                              ///< over its prototypes (taken as at least 4/3 grey levels)
   int iterations = 10;       ///< at most, per pyramid level

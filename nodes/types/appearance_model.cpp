@@ -41,7 +41,7 @@ void fields(Archive& ar, FitLevel& f) {
   ar("raster", f.raster);
   shared_field(ar, "mean", f.mean);
   shared_field(ar, "appearance", f.appearance);
-  shared_field(ar, "update", f.update);
+  shared_field(ar, "change", f.change);
 }
 
 void fields(Archive& ar, AppearanceModel& m) {

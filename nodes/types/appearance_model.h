@@ -35,7 +35,7 @@ struct FitLevel {
   Raster raster;
   SharedMatrix mean;        ///< 3P × 1, normalised mean texture
   SharedMatrix appearance;  ///< 3P × modes, normalised texture per unit of c
-  SharedMatrix update;      ///< 3P × (modes + 4): transposed pseudo-inverse of the mean Jacobian (Eqn 3.21)
+  SharedMatrix change;      ///< 3P × (k_s + 4), normalised texture per unit of shape mode and pose (Eqn 3.21)
 };
 void fields(Archive& ar, FitLevel& f);
 
@@ -68,7 +68,7 @@ struct AppearanceModel {
   Eigen::VectorXf texture(const Eigen::VectorXd& c, std::size_t level = 0) const;
 };
 template <>
-inline constexpr PortType port_type<AppearanceModel>{"AppearanceModel", 1};
+inline constexpr PortType port_type<AppearanceModel>{"AppearanceModel", 2};
 void fields(Archive& ar, AppearanceModel& m);
 
 }  // namespace talkgraph

@@ -24,11 +24,12 @@ struct FaceTrack {
   std::vector<Pose> poses;
   std::vector<double> gain, offset;  ///< of the texture, photometric
   std::vector<double> residual;      ///< RMS texture error of the fit, grey levels
+  std::vector<double> confidence;    ///< 0 (lost) to 1: distance to the nearest bound of a good fit
   std::vector<std::int64_t> lost;    ///< 1 where the fit is not to be trusted (damaged picture, drift)
   std::vector<Shape> shapes;         ///< fitted landmarks in the picture
 };
 template <>
-inline constexpr PortType port_type<FaceTrack>{"FaceTrack", 1};
+inline constexpr PortType port_type<FaceTrack>{"FaceTrack", 2};
 void fields(Archive& ar, FaceTrack& f);
 
 }  // namespace talkgraph

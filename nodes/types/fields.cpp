@@ -105,6 +105,7 @@ void fields(Archive& ar, FaceTrack& f) {
   ar("gain", f.gain);
   ar("offset", f.offset);
   ar("residual", f.residual, "grey level");
+  ar("confidence", f.confidence);
   ar("lost", f.lost);
   ar("shapes", f.shapes, "pixel");
   note_frames(ar, "shapes", f.parameters.rate, f.parameters.start);
