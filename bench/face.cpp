@@ -20,7 +20,8 @@ namespace talkgraph::bench {
 namespace {
 
 constexpr int trained_on = 184, tested_on = 60, tracked = 120;
-constexpr double start_shift = 5, start_scale = 0.035, start_turn = 0.04;  // standard deviations
+constexpr double start_shift = 4.6, start_scale = 0.03, start_turn = 0.035;  // standard deviations
+constexpr double start_reach = 0.1;
 
 std::string name_of(FitMethod method) {
   for (const auto& [value, name] : enum_names<FitMethod>.entries)
@@ -117,7 +118,7 @@ void compare_fits(const AppearanceModel& model, const std::vector<Test>& tests, 
             Fit start;
             start.c = Eigen::VectorXd::Zero(model.modes());
             start.pose = test.start;
-            const Fit found = fitter.coarse_to_fine(pyramid, start);
+            const Fit found = fitter.coarse_to_fine(pyramid, start, {.reach = start_reach});
             return transform(found.pose, model.shape(found.c));
           }));
   }

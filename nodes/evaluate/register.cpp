@@ -10,6 +10,7 @@
 #include "nodes/evaluate/seams.h"
 #include "nodes/evaluate/sequences.h"
 #include "nodes/evaluate/summary.h"
+#include "nodes/evaluate/tracking.h"
 
 namespace talkgraph {
 
@@ -24,6 +25,7 @@ void register_evaluate(Registry& registry) {
   registry.add<Seams>();
   registry.add<SequenceTable>();
   registry.add<Summary>();
+  registry.add<ScoreTracking>();
 }
 
 }  // namespace talkgraph

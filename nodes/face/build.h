@@ -18,7 +18,7 @@ struct BuildAppearance {
   double retain_shape = 0.99;
   double retain_texture = 0.99;
   double retain_combined = 0.99;
-  int levels = 2;  ///< of the fitting pyramid
+  int levels = 3;  ///< of the fitting pyramid
 
   AppearanceModel operator()(const Prototypes& prototypes, Context& context) const;
 };

@@ -1,6 +1,9 @@
 #include "nodes/face/fit.h"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "nodes/face/geometry.h"
 
@@ -8,6 +11,8 @@ namespace talkgraph {
 namespace {
 
 constexpr int pose_parameters = 4;
+constexpr double doubtful = 3;  ///< of the model's own error over its prototypes: a fit that other starts may better
+constexpr double stale = 0.9;   ///< of the error at which a texture's change was found: below, it is found anew
 
 Eigen::Index shape_modes(const AppearanceModel& model) { return model.shape_modes.cols(); }
 
@@ -39,7 +44,11 @@ Pose small_pose(const Eigen::Vector4d& q) {
 }
 
 Fitter::Fitter(const AppearanceModel& model, FitMethod method)
-    : model_(model), method_(method), modes_(model.modes()), textures_(1 + modes_) {
+    : model_(model),
+      method_(method),
+      modes_(model.modes()),
+      textures_(1 + modes_),
+      noise_(std::pow(model.residual / model.texture_gain, 2)) {
   const auto shapes = shape_modes(model), moves = shapes + pose_parameters;
   jacobian_.setZero(textures_ + moves, modes_ + pose_parameters);
   jacobian_.block(1, 0, modes_, modes_).diagonal().setConstant(-1);
@@ -78,11 +87,7 @@ void Fitter::find_normal(Level& level, const Eigen::VectorXd& weights) {
   level.along = level.gram.leftCols(textures_) * weights;
   level.size = weights.dot(level.along.head(textures_));
   const Eigen::MatrixXd blind = level.gram - level.along * level.along.transpose() / level.size;
-  Eigen::MatrixXd normal = jacobian_.transpose() * blind * jacobian_;
-  const double noise = std::pow(model_.residual / model_.texture_gain, 2);
-  normal.diagonal().head(modes_) += noise * model_.combined_variances.cwiseInverse();
-  normal.diagonal().array() += 1e-9 * normal.diagonal().mean();
-  level.normal.compute(normal);
+  level.normal = jacobian_.transpose() * blind * jacobian_;
 }
 
 void Fitter::linearise(Level& level, const Fit& at) {
@@ -134,7 +139,11 @@ Eigen::VectorXd Fitter::step(Level& level, const Fit& at, Seen& seen) const {
   difference *= w.dot(expected.head(textures_)) / w.dot(seen.products.head(textures_));
   difference -= expected;
   difference -= level.along * (level.weights.dot(difference.head(textures_)) / level.size);
-  return level.normal.solve(jacobian_.transpose() * difference);
+  const double noise = std::max(noise_, at.error / static_cast<double>(level.columns.rows()));
+  Eigen::MatrixXd normal = level.normal;
+  normal.diagonal().head(modes_) += noise * model_.combined_variances.cwiseInverse();
+  normal.diagonal().array() += 1e-9 * normal.diagonal().mean();
+  return normal.llt().solve(jacobian_.transpose() * difference);
 }
 
 Fit Fitter::moved(const Fit& from, const Eigen::VectorXd& step, double limit) const {
@@ -154,8 +163,12 @@ Fit Fitter::fit(Pyramid& pyramid, std::size_t level, const Fit& start, const Fit
   Level& at = levels_.at(level);
   Fit best = start;
   look(pyramid, at, best, best_seen_);
+  double linearised_at = std::numeric_limits<double>::infinity();
   for (int round = 0; round < options.iterations && best.gain > 0; ++round) {
-    if (method_ == FitMethod::inverse_compositional) linearise(at, best);
+    if (method_ == FitMethod::inverse_compositional && best.error < stale * linearised_at) {
+      linearise(at, best);
+      linearised_at = best.error;
+    }
     const Eigen::VectorXd full = step(at, best, best_seen_);
     const double before = best.error;
     for (const double length : {1.0, 1.5, 0.5, 0.25}) {
@@ -172,9 +185,26 @@ Fit Fitter::fit(Pyramid& pyramid, std::size_t level, const Fit& start, const Fit
   return best;
 }
 
-Fit Fitter::coarse_to_fine(Pyramid& pyramid, Fit start, const FitOptions& options) {
-  for (std::size_t level = levels_.size(); level-- > 0;) start = fit(pyramid, level, start, options);
-  return start;
+Fit Fitter::descend(Pyramid& pyramid, Fit at, std::size_t level, const FitOptions& options) {
+  while (level-- > 0) at = fit(pyramid, level, at, options);
+  return at;
+}
+
+Fit Fitter::coarse_to_fine(Pyramid& pyramid, const Fit& start, const FitOptions& options) {
+  Fit best = descend(pyramid, start, levels_.size(), options);
+  const double own_error = noise_ * static_cast<double>(levels_.front().columns.rows());
+  if (options.reach == 0 || best.error < doubtful * own_error) return best;
+  const std::size_t coarsest = levels_.size() - 1;
+  const double shift = options.reach * model_.mean_shape.col(0).cwiseAbs().maxCoeff();
+  std::vector<Fit> others;
+  for (const auto& [x, y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+    Fit beside = start;
+    beside.pose = compose(start.pose, {1, 0, shift * x, shift * y});
+    others.push_back(fit(pyramid, coarsest, beside, options));
+  }
+  const auto by_error = [](const Fit& a, const Fit& b) { return a.error < b.error; };
+  const Fit other = descend(pyramid, *std::min_element(others.begin(), others.end(), by_error), coarsest, options);
+  return std::min(best, other, by_error);
 }
 
 }  // namespace talkgraph

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <array>
-#include <optional>
+#include <vector>
 
 #include "graph/description.h"
 #include "nodes/face/sampling.h"
@@ -36,6 +34,7 @@ struct FitOptions {
   int iterations = 10;      ///< at most, per level
   double tolerance = 1e-3;  ///< relative gain under which a fit ends
   double limit = 4;         ///< of the parameters, standard deviations
+  double reach = 0;         ///< if above 0, a doubtful fit is tried again from starts so far beside, half widths
 };
 
 /// Fits a model to pictures (Algorithm 1, docs/method.md §2). It refers to the model and keeps
@@ -47,8 +46,8 @@ class Fitter {
   /// At one level: δ = -R δg, steps 1, 1.5, 0.5, 0.25; it ends when no step lowers the error or the gain is below
   /// the tolerance.
   Fit fit(Pyramid& pyramid, std::size_t level, const Fit& start, const FitOptions& options = {});
-  /// At all levels, the coarsest first.
-  Fit coarse_to_fine(Pyramid& pyramid, Fit start, const FitOptions& options = {});
+  /// At all levels, the coarsest first. A fit is doubtful if its error is far above the model's own.
+  Fit coarse_to_fine(Pyramid& pyramid, const Fit& start, const FitOptions& options = {});
   /// Fills in how well a fit fits at one level: everything but c and pose.
   void evaluate(Pyramid& pyramid, std::size_t level, Fit& fit);
 
@@ -58,12 +57,12 @@ class Fitter {
     Sampler sample;
     SteepestDescent descent;
     Eigen::MatrixXf columns;
-    Eigen::MatrixXd gram;                ///< inner products of the columns
-    Eigen::MatrixX3d colours;            ///< sum of each column over the pixels of a colour
-    Eigen::VectorXd weights;             ///< of the columns in the texture at which the level is linearised
-    Eigen::VectorXd along;               ///< products of that texture with the columns
-    double size = 1;                     ///< its squared norm
-    Eigen::LLT<Eigen::MatrixXd> normal;  ///< JᵀJ with the prior, J blind to gain and offset
+    Eigen::MatrixXd gram;      ///< inner products of the columns
+    Eigen::MatrixX3d colours;  ///< sum of each column over the pixels of a colour
+    Eigen::VectorXd weights;   ///< of the columns in the texture at which the level is linearised
+    Eigen::VectorXd along;     ///< products of that texture with the columns
+    double size = 1;           ///< its squared norm
+    Eigen::MatrixXd normal;    ///< JᵀJ, J blind to gain and offset
   };
   /// A picture's texture inside a shape.
   struct Seen {
@@ -72,6 +71,7 @@ class Fitter {
     Eigen::VectorXd products;  ///< of the normalised texture with the level's columns
   };
 
+  Fit descend(Pyramid& pyramid, Fit at, std::size_t levels, const FitOptions& options);
   Eigen::VectorXd weights(const Fit& fit) const;
   void look(Pyramid& pyramid, Level& level, Fit& fit, Seen& seen);
   void linearise(Level& level, const Fit& at);
@@ -82,6 +82,7 @@ class Fitter {
   const AppearanceModel& model_;
   FitMethod method_;
   Eigen::Index modes_, textures_;  ///< parameters c; columns of textures: 1 + modes
+  double noise_;                   ///< variance of a value of the normalised texture that the model does not explain
   Eigen::MatrixXd jacobian_;       ///< J in terms of the columns, one a parameter (c and pose)
   std::vector<Level> levels_;
   Seen best_seen_, trial_seen_;

@@ -12,6 +12,7 @@
 #include "nodes/face/parameters.h"
 #include "nodes/face/prototype_sheet.h"
 #include "nodes/face/prototypes.h"
+#include "nodes/face/redraw.h"
 #include "nodes/face/render.h"
 #include "nodes/face/report.h"
 #include "nodes/face/select_mouths.h"
@@ -36,6 +37,7 @@ void register_face(Registry& registry) {
   registry.add<MakeEyes>();
   registry.add<KeepMouths>();
   registry.add<SelectMouths>();
+  registry.add<RedrawFace>();
   registry.add<Crop>();
   registry.add<SideBySide>();
   registry.add<FrameStrip>();

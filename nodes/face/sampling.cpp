@@ -115,6 +115,11 @@ void Sampler::operator()(Pyramid& pyramid, const Shape& shape, Eigen::VectorXf& 
   }
 }
 
+void sample(Pyramid& pyramid, const Shape& shape, const Triangles& triangles, const Raster& raster,
+            Eigen::VectorXf& texture) {
+  Sampler(raster, triangles)(pyramid, shape, texture);
+}
+
 cv::Mat raster_picture(const Raster& raster, const Eigen::VectorXf& texture, cv::Scalar fill) {
   cv::Mat picture(raster.height, raster.width, CV_32FC3, fill);
   for (std::size_t i = 0; i < raster.x.size(); ++i) {

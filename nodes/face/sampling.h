@@ -44,6 +44,10 @@ class Sampler {
   Eigen::Index size_;
 };
 
+/// The same, once.
+void sample(Pyramid& pyramid, const Shape& shape, const Triangles& triangles, const Raster& raster,
+            Eigen::VectorXf& texture);
+
 /// A texture as a picture of the raster; `fill` where there is no face.
 cv::Mat raster_picture(const Raster& raster, const Eigen::VectorXf& texture, cv::Scalar fill = {});
 

@@ -8,9 +8,9 @@ namespace {
 TEST(RegisterEvaluate, DescribesEveryNode) {
   Registry registry;
   register_evaluate(registry);
-  for (const char* name :
-       {"evaluate.score", "evaluate.summary", "evaluate.sequences", "evaluate.compare", "evaluate.alignment",
-        "evaluate.explained", "evaluate.mouth_lag", "evaluate.mouth_opening", "evaluate.pictures", "evaluate.seams"})
+  for (const char* name : {"evaluate.score", "evaluate.summary", "evaluate.sequences", "evaluate.compare",
+                           "evaluate.alignment", "evaluate.explained", "evaluate.mouth_lag", "evaluate.mouth_opening",
+                           "evaluate.pictures", "evaluate.seams", "evaluate.tracking"})
     EXPECT_TRUE(registry.find(name)) << name;
 }
 

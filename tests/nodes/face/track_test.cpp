@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "nodes/face/build.h"
-#include "nodes/face/fit.h"
-#include "nodes/face/geometry.h"
 #include "nodes/face/landmarks.h"
 #include "nodes/face/parameters.h"
 #include "synthetic_face.h"
@@ -31,44 +29,20 @@ std::vector<cv::Mat> talking(int frames) {
   return all;
 }
 
-TEST(Fit, ConvergesFromAPerturbedStart) {
-  for (const double push : {-5.0, 4.0}) {
-    const auto face = test::talking_face(7);
-    Pyramid pyramid(test::draw(face));
-    Fit start;
-    start.c = Eigen::VectorXd::Zero(model().modes());
-    start.pose = align(model().mean_shape, test::landmarks(face));
-    start.pose.dx += push;
-    start.pose.dy -= push / 2;
-    start.pose.scale *= 1.05;
-    Fit found = fit(model(), pyramid, 1, start, {30, 1e-4, 4});
-    found = fit(model(), pyramid, 0, found, {30, 1e-4, 4});
-    EXPECT_LT(test::rms_distance(transform(found.pose, model().shape(found.c)), test::landmarks(face)), 0.5);
-  }
-}
+class TrackBy : public testing::TestWithParam<FitMethod> {};
+INSTANTIATE_TEST_SUITE_P(Methods, TrackBy,
+                         testing::Values(FitMethod::fixed_jacobian, FitMethod::inverse_compositional));
 
-TEST(Fit, FindsGainAndOffset) {
-  auto face = test::talking_face(3);
-  Pyramid plain(test::draw(face));
-  face.gain = 0.6;
-  face.offset = 40;
-  Pyramid dim(test::draw(face));
-  Fit a;
-  a.c = Eigen::VectorXd::Zero(model().modes());
-  a.pose = align(model().mean_shape, test::landmarks(face));
-  const Fit b = fit(model(), dim, 0, a, {});
-  a = fit(model(), plain, 0, a, {});
-  EXPECT_NEAR(b.gain, 0.6 * a.gain, 0.02 * a.gain);
-  EXPECT_NEAR(b.offset, 0.6 * a.offset + 40, 1);
-}
-
-TEST(TrackFace, FollowsATalkingFace) {
-  const auto t = track(video_from_frames(talking(20), Rational(25)));
+TEST_P(TrackBy, FollowsATalkingFace) {
+  TrackFace node;
+  node.fitter = GetParam();
+  const auto t = track(video_from_frames(talking(20), Rational(25)), node);
   ASSERT_EQ(t.shapes.size(), 20u);
   EXPECT_EQ(t.parameters.frames(), 20);
   EXPECT_DOUBLE_EQ(t.parameters.start, 0.02);
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(t.lost[i], 0) << i;
+    EXPECT_GT(t.confidence[i], 0.5) << i;
     EXPECT_LT(test::rms_distance(t.shapes[i], test::landmarks(test::talking_face(i))), 0.5) << i;
   }
 }
@@ -83,6 +57,7 @@ TEST(TrackFace, BridgesADamagedFrame) {
     EXPECT_EQ(t.lost, (std::vector<std::int64_t>{0, 0, 0, 0, 1, 0, 0, 0, 0}));
     EXPECT_LT((t.parameters.values.row(4) - 0.5 * (t.parameters.values.row(3) + t.parameters.values.row(5))).norm(),
               1e-12);
+    EXPECT_EQ(t.confidence[4], 0);
     EXPECT_NEAR(t.poses[4].dx, 0.5 * (t.poses[3].dx + t.poses[5].dx), 1e-12);
   }
 }
