@@ -20,8 +20,10 @@ namespace talkgraph::bench {
 namespace {
 
 constexpr int trained_on = 184, tested_on = 60, tracked = 120;
-constexpr double start_shift = 4.6, start_scale = 0.03, start_turn = 0.035;  // standard deviations
-constexpr double start_reach = 0.1;
+constexpr double start_shift = 4.5, start_scale = 0.029, start_turn = 0.034;  // standard deviations
+constexpr double start_reach = 0.1;                                           // half widths
+
+constexpr FitMethod methods[] = {FitMethod::fixed_jacobian, FitMethod::inverse_compositional};
 
 std::string name_of(FitMethod method) {
   for (const auto& [value, name] : enum_names<FitMethod>.entries)
@@ -104,14 +106,14 @@ void print(const std::string& name, const Score& s) {
              tested_on);
 }
 
-void compare_fits(const AppearanceModel& model, const std::vector<Test>& tests, const Prototypes& faces) {
+void compare_fits(const AppearanceModel& model, const std::vector<Test>& tests, FitPeer* peer) {
   std::vector<double> off;
   for (const auto& test : tests) off.push_back(distance(transform(test.start, model.mean_shape), test.truth));
   fmt::print(
-      "Fit of one picture that starts {:.1f} px off (median of {}): processor time, median distance of the "
+      "\nFit of one picture that starts {:.1f} px off (median of {}): processor time, median distance of the "
       "points, fits within 3 px\n\n| fit | ms | px | within 3 px |\n|---|---|---|---|\n",
       median(off), tested_on);
-  for (const auto method : {FitMethod::fixed_jacobian, FitMethod::inverse_compositional}) {
+  for (const auto method : methods) {
     Fitter fitter(model, method);
     print(name_of(method), score(tests, [&](const Test& test) {
             Pyramid pyramid(test.picture);
@@ -122,18 +124,10 @@ void compare_fits(const AppearanceModel& model, const std::vector<Test>& tests, 
             return transform(found.pose, model.shape(found.c));
           }));
   }
-#ifdef TALKGRAPH_FACEMARK
-  const double before = cpu_time();
-  Facemark peer(faces);
-  const double built = cpu_time() - before;
-  print("OpenCV's `FacemarkAAM`", score(tests, [&](const Test& test) {
-          return peer.fit(test.picture, compose(test.start, align(peer.mean(), model.mean_shape)));
-        }));
-  fmt::print("\nFacemarkAAM was built in {:.1f} s.\n", built);
-#else
-  (void)faces;
-  fmt::print("\nOpenCV's FacemarkAAM was not measured: its library is missing.\n");
-#endif
+  if (peer)
+    print("OpenCV's `FacemarkAAM`", score(tests, [&](const Test& test) {
+            return peer->fit(test.picture, compose(test.start, align(peer->mean(), model.mean_shape)));
+          }));
 }
 
 void compare_tracking(const AppearanceModel& model) {
@@ -144,7 +138,7 @@ void compare_tracking(const AppearanceModel& model) {
       "\nA clip of {} frames followed, the search in its first frame included: processor time of a frame, median "
       "distance of the points\n\n| track | ms | px | lost |\n|---|---|---|---|\n",
       tracked);
-  for (const auto method : {FitMethod::fixed_jacobian, FitMethod::inverse_compositional}) {
+  for (const auto method : methods) {
     Context context;
     TrackFace node;
     node.fitter = method;
@@ -191,13 +185,18 @@ void compare_warps(const Prototypes& faces) {
 void compare() {
   cv::setNumThreads(1);
   const auto faces = training_faces();
-  const double before = cpu_time();
-  const auto model = build(faces, BuildAppearance{}.width);
-  fmt::print("build {:.2f} s: {} points, {} shape modes, {} modes, {} pixels, residual {:.2f}\n", cpu_time() - before,
-             model.points(), model.shape_modes.cols(), model.modes(), model.levels[0].raster.size(), model.residual);
-  compare_fits(model, tests(model.mean_shape), faces);
+  AppearanceModel model;
+  std::unique_ptr<FitPeer> peer;
+  const auto build_own = own([&] { model = build(faces, BuildAppearance{}.width); });
+  const auto build_peer = own([&] { peer = facemark(faces); });
+  fmt::print("Processor time for {} pictures of {} x {} pixels with {} points\n\n| build | s |\n|---|---|\n",
+             trained_on, drawn_size, drawn_size, drawn_points);
+  fmt::print("| `face.build` | {:.2f} |\n", build_own());
+  if (const double used = build_peer(); peer) fmt::print("| OpenCV's `FacemarkAAM` | {:.2f} |\n", used);
+  compare_fits(model, tests(model.mean_shape), peer.get());
   compare_tracking(model);
   compare_warps(faces);
+  if (!peer) fmt::print("\nOpenCV's FacemarkAAM was not measured: its library is missing.\n");
 }
 
 }  // namespace

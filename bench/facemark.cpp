@@ -19,37 +19,42 @@ Shape shape(const std::vector<cv::Point2f>& points) {
   return out;
 }
 
-}  // namespace
+class Facemark final : public FitPeer {
+ public:
+  explicit Facemark(const Prototypes& faces) {
+    cv::face::FacemarkAAM::Params settings;
+    settings.verbose = settings.save_model = false;
+    model_ = cv::face::FacemarkAAM::create(settings);
+    for (std::size_t i = 0; i < faces.shapes.size(); ++i)
+      model_->addTrainingSample(faces.images[i].pixels, points(faces.shapes[i]));
+    model_->training();
+  }
 
-struct Facemark::Peer {
-  cv::Ptr<cv::face::FacemarkAAM> model;
+  Shape mean() const override {
+    cv::face::FacemarkAAM::Data data;
+    model_->getData(&data);
+    return shape(data.s0);
+  }
+
+  Shape fit(const cv::Mat& picture, const Pose& start) override {
+    const auto c = static_cast<float>(std::cos(start.angle)), s = static_cast<float>(std::sin(start.angle));
+    const std::vector<cv::face::FacemarkAAM::Config> starts = {
+        {(cv::Mat_<float>(2, 2) << c, -s, s, c),
+         cv::Point2f(static_cast<float>(start.dx), static_cast<float>(start.dy)), static_cast<float>(start.scale), 0}};
+    const std::vector<cv::Rect> faces = {cv::Rect({}, picture.size())};
+    std::vector<cv::Mat> found;  // a vector of vectors of points would hold no result
+    if (!model_->fitConfig(picture, faces, found, starts)) throw std::runtime_error("FacemarkAAM found no face");
+    std::vector<cv::Point2f> places;
+    found.at(0).copyTo(places);
+    return shape(places);
+  }
+
+ private:
+  cv::Ptr<cv::face::FacemarkAAM> model_;
 };
 
-Facemark::Facemark(const Prototypes& faces) : peer_(std::make_unique<Peer>()) {
-  cv::face::FacemarkAAM::Params settings;
-  settings.verbose = settings.save_model = false;
-  peer_->model = cv::face::FacemarkAAM::create(settings);
-  for (std::size_t i = 0; i < faces.shapes.size(); ++i)
-    peer_->model->addTrainingSample(faces.images[i].pixels, points(faces.shapes[i]));
-  peer_->model->training();
-  cv::face::FacemarkAAM::Data data;
-  peer_->model->getData(&data);
-  mean_ = shape(data.s0);
-}
+}  // namespace
 
-Facemark::~Facemark() = default;
-
-Shape Facemark::fit(const cv::Mat& picture, const Pose& start) {
-  const auto c = static_cast<float>(std::cos(start.angle)), s = static_cast<float>(std::sin(start.angle));
-  const std::vector<cv::face::FacemarkAAM::Config> starts = {
-      {(cv::Mat_<float>(2, 2) << c, -s, s, c), cv::Point2f(static_cast<float>(start.dx), static_cast<float>(start.dy)),
-       static_cast<float>(start.scale), 0}};
-  std::vector<cv::Mat> found;  // into vectors of points it writes what is no result
-  const std::vector<cv::Rect> faces = {cv::Rect({}, picture.size())};
-  if (!peer_->model->fitConfig(picture, faces, found, starts)) throw std::runtime_error("FacemarkAAM found no face");
-  std::vector<cv::Point2f> places;
-  found.at(0).copyTo(places);
-  return shape(places);
-}
+std::unique_ptr<FitPeer> facemark(const Prototypes& faces) { return std::make_unique<Facemark>(faces); }
 
 }  // namespace talkgraph::bench

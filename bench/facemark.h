@@ -7,19 +7,17 @@
 
 namespace talkgraph::bench {
 
-/// OpenCV's active appearance model, to compare with. It scales pictures to its own size, so that its starts are
-/// given as poses of its mean shape.
-class Facemark {
+/// Another program's model of faces, to compare with.
+class FitPeer {
  public:
-  explicit Facemark(const Prototypes& faces);
-  ~Facemark();
-  const Shape& mean() const { return mean_; }
-  Shape fit(const cv::Mat& picture, const Pose& start);
-
- private:
-  struct Peer;
-  std::unique_ptr<Peer> peer_;
-  Shape mean_;
+  virtual ~FitPeer() = default;
+  /// In a frame of its own.
+  virtual Shape mean() const = 0;
+  /// The points found from a pose of the mean shape.
+  virtual Shape fit(const cv::Mat& picture, const Pose& start) = 0;
 };
+
+/// OpenCV's FacemarkAAM built from the faces; null where talkgraph was built without its library.
+std::unique_ptr<FitPeer> facemark(const Prototypes& faces);
 
 }  // namespace talkgraph::bench

@@ -95,8 +95,7 @@ void Sampler::operator()(Pyramid& pyramid, const Shape& shape, Eigen::VectorXf& 
   const Pixels pixels(pyramid.level(k));
   const auto maps = affine_maps(points_, shape / std::exp2(k), triangles_);
   texture.resize(3 * size_);
-  float* out = texture.data();
-  float* const last_pixel = out + 3 * (size_ - 1);
+  PixelWriter out(texture.data(), size_);
   for (const Run& run : runs_) {
     const Affine& m = maps[static_cast<std::size_t>(run.triangle)];
     const auto y = static_cast<float>(run.y);
@@ -105,13 +104,7 @@ void Sampler::operator()(Pyramid& pyramid, const Shape& shape, Eigen::VectorXf& 
       return Eigen::Array2f(m.a * x + x0, m.d * x + y0);
     };
     const bool inside = pixels.hold(at(0)) && pixels.hold(at(run.length - 1));
-    for (int i = 0; i < run.length; ++i, out += 3) {
-      const Eigen::Array4f value = inside ? pixels.at(at(i)) : pixels.at_border(at(i));
-      if (out != last_pixel)
-        Eigen::Map<Eigen::Array4f>{out} = value;
-      else
-        Eigen::Map<Eigen::Array3f>{out} = value.head<3>();
-    }
+    for (int i = 0; i < run.length; ++i) out.write(inside ? pixels.at(at(i)) : pixels.at_border(at(i)));
   }
 }
 

@@ -28,6 +28,23 @@ struct Run {
 };
 std::vector<Run> runs(const Raster& raster);
 
+/// Writes pixels of three channels one after the other, each as four floats, the last of which the next pixel takes.
+class PixelWriter {
+ public:
+  PixelWriter(float* texture, Eigen::Index pixels) : next_(texture), last_(texture + 3 * (pixels - 1)) {}
+  void write(const Eigen::Array4f& pixel) {
+    if (next_ != last_)
+      Eigen::Map<Eigen::Array4f>{next_} = pixel;
+    else
+      Eigen::Map<Eigen::Array3f>{next_} = pixel.head<3>();
+    next_ += 3;
+  }
+
+ private:
+  float* next_;
+  float* last_;
+};
+
 /// Warps the picture inside a shape (picture coordinates) onto a raster:
 /// piecewise affine, bilinear, taken from the level of the pyramid that fits
 /// the raster's resolution. Outside the picture its border pixels are repeated.

@@ -8,14 +8,15 @@ namespace talkgraph {
 namespace {
 
 using Channels = Eigen::Array<float, 3, Eigen::Dynamic>;
+using Gradient = Eigen::Array<float, 4, Eigen::Dynamic>;  // the fourth number means nothing
 
 /// Half the difference of two neighbours, the whole where one is the pixel itself.
 void differences(const Eigen::Map<const Channels>& texture, const std::vector<int>& before,
-                 const std::vector<int>& after, Channels& gradient) {
-  gradient.resize(3, texture.cols());
+                 const std::vector<int>& after, Gradient& gradient) {
+  gradient.setZero(4, texture.cols());
   for (int i = 0; i < static_cast<int>(texture.cols()); ++i) {
     const int a = before[static_cast<std::size_t>(i)], b = after[static_cast<std::size_t>(i)];
-    gradient.col(i) = (texture.col(b) - texture.col(a)) * (a == i || b == i ? 1.f : 0.5f);
+    gradient.col(i).head<3>() = (texture.col(b) - texture.col(a)) * (a == i || b == i ? 1.f : 0.5f);
   }
 }
 
@@ -55,14 +56,14 @@ SteepestDescent::SteepestDescent(const Raster& raster, const Triangles& triangle
 void SteepestDescent::operator()(const Shape& shape, const Eigen::MatrixXd& directions, const Eigen::VectorXf& texture,
                                  Eigen::Ref<Eigen::MatrixXf> images) const {
   const Eigen::Map<const Channels> channels(texture.data(), 3, texture.size() / 3);
-  Channels by_x, by_y;
+  Gradient by_x, by_y;
   differences(channels, left_, right_, by_x);
   differences(channels, above_, below_, by_y);
   const auto warps = affine_maps(points_, shape, triangles_);
   for (Eigen::Index j = 0; j < directions.cols(); ++j) {
     auto moves = affine_maps(points_, unflatten(directions.col(j)), triangles_);
     for (std::size_t t = 0; t < moves.size(); ++t) moves[t] = on_raster(warps[t], moves[t]);
-    Eigen::Map<Channels> image(images.col(j).data(), 3, channels.cols());
+    PixelWriter image(images.col(j).data(), channels.cols());
     Eigen::Index i = 0;
     for (const Run& run : runs_) {
       const Affine& m = moves[static_cast<std::size_t>(run.triangle)];
@@ -70,7 +71,7 @@ void SteepestDescent::operator()(const Shape& shape, const Eigen::MatrixXd& dire
       const float x0 = m.b * y + m.c, y0 = m.e * y + m.f;
       for (int k = 0; k < run.length; ++k, ++i) {
         const auto x = static_cast<float>(run.x + k);
-        image.col(i) = by_x.col(i) * (m.a * x + x0) + by_y.col(i) * (m.d * x + y0);
+        image.write(by_x.col(i) * (m.a * x + x0) + by_y.col(i) * (m.d * x + y0));
       }
     }
   }
