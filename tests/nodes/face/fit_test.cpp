@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "nodes/face/build.h"
 #include "nodes/face/geometry.h"
 #include "nodes/face/steepest_descent.h"
@@ -84,7 +86,15 @@ TEST(SteepestDescent, IsExactWhereAPictureIsLinear) {
   Sampler(raster, triangles)(pyramid, transform({1, 0, 40, 30}, shape), texture);
   Eigen::MatrixXf images(texture.size(), 4);
   SteepestDescent(raster, triangles)(shape, pose_directions(shape), texture, images);
+  std::set<std::pair<int, int>> pixels;
+  for (std::size_t i = 0; i < raster.x.size(); ++i) pixels.insert({raster.x[i], raster.y[i]});
+  int compared = 0;
   for (Eigen::Index i = 0; i < raster.size(); ++i) {
+    const int x = raster.x[static_cast<std::size_t>(i)], y = raster.y[static_cast<std::size_t>(i)];
+    const bool tip = !(pixels.contains({x - 1, y}) || pixels.contains({x + 1, y})) ||
+                     !(pixels.contains({x, y - 1}) || pixels.contains({x, y + 1}));
+    if (tip) continue;  // it has no neighbour to tell how it changes
+    ++compared;
     EXPECT_NEAR(images(3 * i, 2), 1, 1e-4);
     EXPECT_NEAR(images(3 * i + 1, 2), 0, 1e-4);
     EXPECT_NEAR(images(3 * i + 2, 2), 2, 1e-4);
@@ -92,6 +102,7 @@ TEST(SteepestDescent, IsExactWhereAPictureIsLinear) {
     EXPECT_NEAR(images(3 * i, 0), texture(3 * i) - 40, 1e-3);
     EXPECT_NEAR(images(3 * i, 1), -(texture(3 * i + 1) - 30), 1e-3);
   }
+  EXPECT_GT(compared, raster.size() - 8);
 }
 
 TEST(Fitter, MeasuresAFitAsTexturesThatAreMade) {
