@@ -185,26 +185,24 @@ Fit Fitter::fit(Pyramid& pyramid, std::size_t level, const Fit& start, const Fit
   return best;
 }
 
-Fit Fitter::descend(Pyramid& pyramid, Fit at, std::size_t level, const FitOptions& options) {
-  while (level-- > 0) at = fit(pyramid, level, at, options);
+Fit Fitter::descend(Pyramid& pyramid, Fit at, const FitOptions& options) {
+  for (std::size_t level = levels_.size(); level-- > 0;) at = fit(pyramid, level, at, options);
   return at;
 }
 
 Fit Fitter::coarse_to_fine(Pyramid& pyramid, const Fit& start, const FitOptions& options) {
-  Fit best = descend(pyramid, start, levels_.size(), options);
+  Fit best = descend(pyramid, start, options);
+  if (options.reach == 0) return best;
   const double own_error = noise_ * static_cast<double>(levels_.front().columns.rows());
-  if (options.reach == 0 || best.error < doubtful * own_error) return best;
-  const std::size_t coarsest = levels_.size() - 1;
   const double shift = options.reach * model_.mean_shape.col(0).cwiseAbs().maxCoeff();
-  std::vector<Fit> others;
   for (const auto& [x, y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+    if (best.error < doubtful * own_error) break;
     Fit beside = start;
     beside.pose = compose(start.pose, {1, 0, shift * x, shift * y});
-    others.push_back(fit(pyramid, coarsest, beside, options));
+    beside = descend(pyramid, beside, options);
+    if (beside.error < best.error) best = std::move(beside);
   }
-  const auto by_error = [](const Fit& a, const Fit& b) { return a.error < b.error; };
-  const Fit other = descend(pyramid, *std::min_element(others.begin(), others.end(), by_error), coarsest, options);
-  return std::min(best, other, by_error);
+  return best;
 }
 
 }  // namespace talkgraph

@@ -71,7 +71,7 @@ class Fitter {
     Eigen::VectorXd products;  ///< of the normalised texture with the level's columns
   };
 
-  Fit descend(Pyramid& pyramid, Fit at, std::size_t levels, const FitOptions& options);
+  Fit descend(Pyramid& pyramid, Fit at, const FitOptions& options);
   Eigen::VectorXd weights(const Fit& fit) const;
   void look(Pyramid& pyramid, Level& level, Fit& fit, Seen& seen);
   void linearise(Level& level, const Fit& at);
