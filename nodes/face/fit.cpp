@@ -105,7 +105,7 @@ void Fitter::linearise(Level& level, const Fit& at) {
   find_normal(level, w);
 }
 
-void Fitter::look(Pyramid& pyramid, Level& level, Fit& fit, Seen& seen) {
+void Fitter::look(Pyramid& pyramid, const Level& level, Fit& fit, Seen& seen) const {
   level.sample(pyramid, transform(fit.pose, model_.shape(fit.c)), seen.texture);
   const Sums sums(seen.texture);
   const auto values = static_cast<double>(seen.texture.size());
@@ -129,7 +129,7 @@ void Fitter::look(Pyramid& pyramid, Level& level, Fit& fit, Seen& seen) {
   if (sizes > 0) fit.detail = (likeness - 3 * (expected * picture).sum() / values) / std::sqrt(sizes);
 }
 
-Eigen::VectorXd Fitter::step(Level& level, const Fit& at, Seen& seen) const {
+Eigen::VectorXd Fitter::step(const Level& level, const Fit& at, const Seen& seen) const {
   const auto moves = level.columns.cols() - textures_;
   const Eigen::VectorXd w = weights(at);
   const Eigen::VectorXf products = level.columns.rightCols(moves).transpose() * seen.texture;

@@ -73,10 +73,10 @@ class Fitter {
 
   Fit descend(Pyramid& pyramid, Fit at, const FitOptions& options);
   Eigen::VectorXd weights(const Fit& fit) const;
-  void look(Pyramid& pyramid, Level& level, Fit& fit, Seen& seen);
+  void look(Pyramid& pyramid, const Level& level, Fit& fit, Seen& seen) const;
   void linearise(Level& level, const Fit& at);
   void find_normal(Level& level, const Eigen::VectorXd& weights);
-  Eigen::VectorXd step(Level& level, const Fit& at, Seen& seen) const;
+  Eigen::VectorXd step(const Level& level, const Fit& at, const Seen& seen) const;
   Fit moved(const Fit& from, const Eigen::VectorXd& step, double limit) const;
 
   const AppearanceModel& model_;

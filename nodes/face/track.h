@@ -12,7 +12,7 @@ namespace talkgraph {
 /// Follows the face through a clip with the model alone. The first frame is
 /// searched on a grid of mean-shape windows, later ones start from the last
 /// good one; where the residual exceeds the threshold the frame is searched
-/// anew, and if that fails it is lost. Lost and damaged frames get parameters
+/// anew, and if that fails it is lost, with confidence 0. Lost and damaged frames get parameters
 /// and pose interpolated between their good neighbours (copied at the ends);
 /// with no good frame at all, the mean face in the middle of the picture.
 /// Throws std::runtime_error on a clip without frames. docs/method.md §2, Algorithm 1.
