@@ -23,23 +23,27 @@ struct Pixels {
         beside(picture.cols > 1 ? 3 : 0),
         below(picture.rows > 1 ? step : 0) {}
 
-  bool hold(const Eigen::Array2f& p) const { return p.x() >= 0 && p.y() >= 0 && p.x() <= right && p.y() <= bottom; }
+  /// Whether the pixels to the right of a position and below it are there as well.
+  bool hold(const Eigen::Array2f& p) const { return p.x() >= 0 && p.y() >= 0 && p.x() < right && p.y() < bottom; }
 
-  /// Bilinear value at a position inside the picture: three channels, and a fourth number that means nothing.
+  /// Bilinear value at such a position: three channels, and a fourth number that means nothing.
   Eigen::Array4f at(const Eigen::Array2f& p) const {
+    return between(static_cast<int>(p.x()), static_cast<int>(p.y()), p);
+  }
+
+  Eigen::Array4f at_border(const Eigen::Array2f& p) const {
+    const Eigen::Array2f q(std::min(std::max(p.x(), 0.f), right), std::min(std::max(p.y(), 0.f), bottom));
+    return between(std::min(static_cast<int>(q.x()), last_x), std::min(static_cast<int>(q.y()), last_y), q);
+  }
+
+  Eigen::Array4f between(int x0, int y0, const Eigen::Array2f& p) const {
     using Pixel = Eigen::Map<const Eigen::Array4f>;
-    const float x = p.x(), y = p.y();
-    const int x0 = std::min(static_cast<int>(x), last_x), y0 = std::min(static_cast<int>(y), last_y);
-    const float u = x - static_cast<float>(x0), v = y - static_cast<float>(y0);
+    const float u = p.x() - static_cast<float>(x0), v = p.y() - static_cast<float>(y0);
     const float* top = data + y0 * step + 3 * x0;
     const float* low = top + below;
     const Eigen::Array4f upper = Pixel(top) + u * (Pixel(top + beside) - Pixel(top));
     const Eigen::Array4f lower = Pixel(low) + u * (Pixel(low + beside) - Pixel(low));
     return upper + v * (lower - upper);
-  }
-
-  Eigen::Array4f at_border(const Eigen::Array2f& p) const {
-    return at({std::min(std::max(p.x(), 0.f), right), std::min(std::max(p.y(), 0.f), bottom)});
   }
 
   const float* data;
