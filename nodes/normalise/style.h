@@ -44,7 +44,7 @@ struct RemoveStyle {
 
   struct Out {
     Track normalised;  ///< T × D
-    Track style;       ///< T × D, what was taken off: the training mean, the style of each frame, and what no component has
+    Track style;  ///< T × D, what was taken off: the training mean, the style of each frame, and what no component has
   };
   Out operator()(const IndependentComponents& components, const Track& track, const Table* ranking) const;
 };

@@ -108,7 +108,8 @@ TEST(Nodes, WhatTheyGiveCanBeWrittenAndLoaded) {
     for (const auto& port : type.outputs) {
       const auto value = port.info->make();
       const std::string file = folder.file("value.h5");
-      EXPECT_NO_THROW(write_hdf5(file, [&](Archive& ar) { port.info->visit(ar, value.get()); })) << name << " " << port.name;
+      EXPECT_NO_THROW(write_hdf5(file, [&](Archive& ar) { port.info->visit(ar, value.get()); }))
+          << name << " " << port.name;
       EXPECT_NO_THROW(port.info->visit(*hdf5_reader(file), port.info->make().get())) << name << " " << port.name;
     }
   }

@@ -72,7 +72,8 @@ TEST_F(WritesHdf5, WhatIsReadBack) {
   expect_round_trip(StateData{"a-b", {Eigen::MatrixXd::Ones(2, 3), Eigen::MatrixXd::Zero(4, 3)}, {}}, "ragged");
   expect_round_trip(Table{"t", "c", {"x"}, {"a", "b"}, {{1}, {2}}}, "table");
   expect_round_trip(Scores{{{"acc", 0.5}, {"a/b", 2}}}, "scores");
-  FaceTrack face{example_track(), {{1, 0.1, 2, 3}, {}}, {1, 1}, {0, 0}, {3, 4}, {0.5, 0}, {0, 1}, example_landmarks().frames};
+  FaceTrack face{example_track(), {{1, 0.1, 2, 3}, {}},      {1, 1}, {0, 0}, {3, 4}, {0.5, 0},
+                 {0, 1},          example_landmarks().frames};
   expect_round_trip(face, "face");
 }
 
