@@ -54,7 +54,14 @@ Shape points_in(const Json& json) {
 }
 
 Annotation annotation_in(const std::string& body) {
-  const auto json = Json::parse(body, nullptr, false);
+  constexpr int deepest = 4;
+  const auto json = Json::parse(
+      body,
+      [](int depth, Json::parse_event_t, const Json&) {
+        if (depth > deepest) throw Refusal(400, "an object with \"points\" and \"done\" is expected");
+        return true;
+      },
+      false);
   if (!json.is_object() || !json.contains("points") || !json.contains("done") || !json["done"].is_boolean())
     throw Refusal(400, "an object with \"points\" and \"done\" is expected");
   return {points_in(json["points"]), json["done"].get<bool>()};

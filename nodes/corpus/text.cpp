@@ -65,7 +65,7 @@ std::vector<TextLine> lines_of(std::string_view text) {
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.find_first_not_of(" \t") != std::string::npos) lines.push_back({number, line});
+    if (line.find_first_not_of(" \t\r\v\f") != std::string::npos) lines.push_back({number, line});
   }
   return lines;
 }

@@ -281,7 +281,7 @@ void limit_run(Plan& plan) {
   constexpr double longest = 10;  // seconds
   const double base_rate = plan.base.frames.source->rate().value();
   const double needed = static_cast<double>(plan.parameters().frames()) / plan.parameters().rate.value() * base_rate;
-  plan.loops = needed > static_cast<double>(plan.run.length);
+  plan.loops = needed > static_cast<double>(plan.run.length) + 1e-6;  // equal rates are not quite equal when divided
   if (plan.loops)
     plan.run.length = std::min(plan.run.length, static_cast<std::int64_t>(std::ceil(longest * base_rate)));
 }

@@ -152,7 +152,7 @@ FaceTrack TrackFace::operator()(const AppearanceModel& model, const Video& video
 }
 
 void describe(Description<TrackFace>& d) {
-  d.type("face.track").version(2).summary("follows the face through a clip with the model alone");
+  d.type("face.track").version(3).summary("follows the face through a clip with the model alone");
   d.source("Thesis §3.1.4, Algorithm 1; docs/method.md §2").stored();
   d.input("model", "of the face")
       .input("video", "a clip of that speaker")

@@ -102,9 +102,10 @@ TEST_F(ServerTest, OfTwoWindowsTheLaterIsToldWhatTheOtherDid) {
 
 TEST_F(ServerTest, RefusesWhatIsNoAnnotation) {
   const httplib::Headers fresh = {{"If-Match", "none"}};
+  const std::string deep = "{\"points\": " + std::string(60000, '[');
   for (const char* text : {"", "[]", "{", "{\"points\": [], \"done\": true}", "{\"points\": [[1]], \"done\": false}",
                            "{\"points\": 3, \"done\": false}", "{\"points\": [[1, \"x\"]], \"done\": false}",
-                           "{\"points\": [[1, 2]]}", "\xff\xfe"})
+                           "{\"points\": [[1, 2]]}", "\xff\xfe", deep.c_str()})
     EXPECT_TRUE(put(text, fresh, 400).contains("error")) << text;
   const auto good = body(truth(*project_, 0), false);
   put(good, {}, 428);

@@ -59,7 +59,7 @@ TEST_F(LandmarksTest, SomeFramesOfACsv) {
 
 TEST_F(LandmarksTest, PtsFolder) {
   write("p/f2.pts", "version: 1\nn_points: 2\n{\n1 2\n3.5 4\n}\n");
-  write("p/f10.pts", "version: 1\r\nn_points:  2\r\n{\r\n5 6\r\n7 8\r\n}\r\n");
+  write("p/f10.pts", "version: 1\r\nn_points:  2\r\n\f\r\n\r\r\n{\r\n5 6\r\n7 8\r\n}\r\n");
   const auto track = read(path("p"));
   ASSERT_EQ(track.frames.size(), 2u);
   EXPECT_EQ(track.frames[0], shape(0, 1, 2.5, 3)) << "1-based pixels become 0-based";
