@@ -22,13 +22,7 @@
 namespace talkgraph {
 namespace {
 
-const AppearanceModel& model() {
-  static const AppearanceModel built = [] {
-    Context context;
-    return BuildAppearance{}(test::synthetic_prototypes(), context);
-  }();
-  return built;
-}
+using test::model;
 
 Video still(double open, int frames, std::string name = "still") {
   test::SyntheticFace f;

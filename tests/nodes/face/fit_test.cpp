@@ -12,13 +12,7 @@
 namespace talkgraph {
 namespace {
 
-const AppearanceModel& model() {
-  static const AppearanceModel built = [] {
-    Context context;
-    return BuildAppearance{}(test::synthetic_prototypes(), context);
-  }();
-  return built;
-}
+using test::model;
 
 Fit mean_at(const AppearanceModel& model, const Shape& place) {
   Fit start;

@@ -12,13 +12,7 @@
 namespace talkgraph {
 namespace {
 
-const AppearanceModel& model() {
-  static const AppearanceModel built = [] {
-    Context context;
-    return BuildAppearance{}(test::synthetic_prototypes(), context);
-  }();
-  return built;
-}
+using test::model;
 
 /// The faces of one row, from minus two deviations to plus two.
 struct Row {

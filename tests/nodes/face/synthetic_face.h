@@ -2,6 +2,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "nodes/face/build.h"
 #include "nodes/types/prototypes.h"
 
 namespace talkgraph::test {
@@ -26,5 +27,14 @@ SyntheticFace talking_face(int frame);
 double rms_distance(const Shape& a, const Shape& b);
 /// Peak signal to noise ratio in decibels.
 double psnr(const cv::Mat& a, const cv::Mat& b);
+
+/// The model of these prototypes, built once.
+inline const AppearanceModel& model() {
+  static const AppearanceModel built = [] {
+    Context context;
+    return BuildAppearance{}(test::synthetic_prototypes(), context);
+  }();
+  return built;
+}
 
 }  // namespace talkgraph::test

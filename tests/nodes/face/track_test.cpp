@@ -10,13 +10,7 @@
 namespace talkgraph {
 namespace {
 
-const AppearanceModel& model() {
-  static const AppearanceModel built = [] {
-    Context context;
-    return BuildAppearance{}(test::synthetic_prototypes(), context);
-  }();
-  return built;
-}
+using test::model;
 
 FaceTrack track(const Video& video, TrackFace node = {}) {
   Context context;
