@@ -4,12 +4,46 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace talkgraph {
 
-bool Cholesky::factorise() {
+namespace {
+
+std::string first_not_finite(const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+      if (!std::isfinite(matrix(i, j))) return fmt::format("({}, {}) is {}", i, j, matrix(i, j));
+  return "";
+}
+
+/// Ratio of the largest to the smallest pivot, in absolute value, of a pivoted LDLᵀ decomposition.
+double condition(const Eigen::MatrixXd& matrix) {
+  const Eigen::ArrayXd pivots = matrix.ldlt().vectorD().array().abs();
+  return pivots.maxCoeff() / pivots.minCoeff();
+}
+
+[[noreturn]] void refuse(const Eigen::MatrixXd& matrix, const char* what) {
+  const std::string size = fmt::format("{} ({} × {})", what, matrix.rows(), matrix.cols());
+  if (!matrix.allFinite())
+    throw FactorisationError(fmt::format(
+        "{} is not finite: entry {}; look for NaN or values of extreme scale in the data, or parameters run away: "
+        "scale the data, hold kernel parameters by a prior, fix them",
+        size, first_not_finite(matrix)));
+  throw FactorisationError(fmt::format(
+      "{} is not positive definite, even with a hundredth of its mean diagonal added (diagonal from {:.3g} to {:.3g}, "
+      "condition about {:.1g}): raise minimum_noise, look for repeated points, or lower the number of inducing points",
+      size, matrix.diagonal().minCoeff(), matrix.diagonal().maxCoeff(), condition(matrix)));
+}
+
+}  // namespace
+
+bool Cholesky::factorise(const Eigen::MatrixXd& matrix) {
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(factor_);
-  if (llt.info() != Eigen::Success || !(factor_.diagonal().array() > 0).all()) return false;
+  if (llt.info() != Eigen::Success) return false;
+  const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(matrix.rows());
+  if (!(factor_.diagonal().array().square() > rounding * matrix.diagonal().array()).all()) return false;
   factor_.triangularView<Eigen::StrictlyUpper>().setZero();
   return true;
 }
@@ -20,13 +54,15 @@ void Cholesky::compute(const Eigen::MatrixXd& matrix, double jitter, const char*
     for (jitter_ = jitter; jitter_ <= 1e-2; jitter_ = std::max(10 * jitter_, 1e-10)) {
       factor_ = matrix;
       factor_.diagonal().array() += jitter_ * mean;
-      if (factorise()) return;
+      if (factorise(matrix)) return;
     }
   }
-  throw FactorisationError(fmt::format(
-      "{} ({} × {}, diagonal from {:.3g} to {:.3g}) cannot be factorised, even with a hundredth of its mean diagonal "
-      "added: look for values that are not finite or of extreme scale, or raise minimum_noise",
-      what, matrix.rows(), matrix.cols(), matrix.diagonal().minCoeff(), matrix.diagonal().maxCoeff()));
+  refuse(matrix, what);
+}
+
+void Cholesky::add_jitter_gradient(Eigen::Ref<Eigen::MatrixXd> derivative) const {
+  const double trace = derivative.trace();
+  derivative.diagonal().array() += jitter_ * trace / static_cast<double>(derivative.rows());
 }
 
 }  // namespace talkgraph

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "nodes/latent/gp_likelihood.h"
+#include "nodes/latent/triangular.h"
 
 namespace talkgraph {
 
@@ -13,8 +14,9 @@ void FullLikelihood::factorise(const Kernel& kernel, const ConstMatrix& x) {
   note(cholesky_);
 }
 
-double FullLikelihood::evaluate(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix&, const ConstMatrix& y,
+double FullLikelihood::evaluate(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u, const ConstMatrix& y,
                                 GpGradient* gradient) {
+  check(kernel, x, y);
   const double n = static_cast<double>(y.rows()), d = static_cast<double>(y.cols());
   factorise(kernel, x);
   const auto lower = cholesky_.factor().triangularView<Eigen::Lower>();
@@ -22,24 +24,26 @@ double FullLikelihood::evaluate(const Kernel& kernel, const ConstMatrix& x, cons
   lower.solveInPlace(whitened_);
   const double value =
       -0.5 * (n * d * std::log(2 * std::numbers::pi) + d * cholesky_.log_determinant() + whitened_.squaredNorm());
-  if (!gradient) return value;
-
-  alpha_ = whitened_;
-  lower.transpose().solveInPlace(alpha_);
-  gradient->outputs = -alpha_;
-  inverse_.setIdentity(y.rows(), y.rows());
-  lower.solveInPlace(inverse_);
-  g_.resize(y.rows(), y.rows());
-  g_.noalias() = (-0.5 * d) * inverse_.transpose() * inverse_;
-  g_.noalias() += 0.5 * alpha_ * alpha_.transpose();
-  g_.diagonal().array() += cholesky_.jitter() * g_.trace() / n;
-  white_gradient(kernel, g_.trace(), gradient->kernel);
-  kernel_.gradient(kernel, x, x, g_, gradient->inputs, gradient->inputs, gradient->kernel);
+  if (gradient) {
+    alpha_ = whitened_;
+    lower.transpose().solveInPlace(alpha_);
+    gradient->outputs = -alpha_;
+    invert_lower(cholesky_.factor(), inverse_);
+    g_.setZero(y.rows(), y.rows());
+    g_.selfadjointView<Eigen::Lower>().rankUpdate(inverse_.transpose(), -0.5 * d);
+    g_.selfadjointView<Eigen::Lower>().rankUpdate(alpha_, 0.5);
+    g_.triangularView<Eigen::StrictlyUpper>() = g_.transpose();
+    cholesky_.add_jitter_gradient(g_);
+    white_gradient(kernel, g_.trace(), gradient->kernel);
+    kernel_.gradient(kernel, x, x, g_, gradient->inputs, gradient->inputs, gradient->kernel);
+  }
+  check_finite(value, gradient, x, u, y);
   return value;
 }
 
 GaussianProcess FullLikelihood::posterior(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix&,
                                           const ConstMatrix& y) {
+  check(kernel, x, y);
   factorise(kernel, x);
   const auto lower = cholesky_.factor().triangularView<Eigen::Lower>();
   GaussianProcess gp;
@@ -48,9 +52,8 @@ GaussianProcess FullLikelihood::posterior(const Kernel& kernel, const ConstMatri
   gp.weights = y;
   lower.solveInPlace(gp.weights);
   lower.transpose().solveInPlace(gp.weights);
-  inverse_.setIdentity(y.rows(), y.rows());
-  lower.solveInPlace(inverse_);
-  gp.reduction.noalias() = inverse_.transpose() * inverse_;
+  invert_lower(cholesky_.factor(), inverse_);
+  gp.root = inverse_.transpose();
   return gp;
 }
 

@@ -1,11 +1,42 @@
 #include "nodes/latent/gp_likelihood.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
 namespace talkgraph {
 
 void GpGradient::set_zero(Eigen::Index n, Eigen::Index k, Eigen::Index d, Eigen::Index parameters) {
   inputs.setZero(n, d);
   inducing.setZero(k, d);
   kernel.setZero(parameters);
+}
+
+void GpLikelihood::check(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& y) {
+  require_dimension(kernel, x.cols());
+  if (x.rows() != y.rows() || x.rows() == 0)
+    throw std::invalid_argument(
+        fmt::format("a Gaussian process of {} inputs and {} outputs: it needs at least one, "
+                    "and as many of both",
+                    x.rows(), y.rows()));
+}
+
+void GpLikelihood::check_finite(double value, const GpGradient* gradient, const ConstMatrix& x, const ConstMatrix& u,
+                                const ConstMatrix& y) {
+  const bool derivatives = !gradient || (gradient->inputs.allFinite() && gradient->inducing.allFinite() &&
+                                         gradient->kernel.allFinite() && gradient->outputs.allFinite());
+  if (std::isfinite(value) && derivatives) return;
+  const auto largest = [](const ConstMatrix& m) { return m.size() > 0 ? m.cwiseAbs().maxCoeff() : 0.0; };
+  const char* nan = !x.allFinite()   ? "inputs"
+                    : !u.allFinite() ? "inducing points"
+                    : !y.allFinite() ? "outputs"
+                                     : nullptr;
+  throw FactorisationError(
+      nan ? fmt::format("the log-likelihood is not finite: the {} are not", nan)
+          : fmt::format("the log-likelihood {} not finite: inputs reach {:.3g}, outputs {:.3g}; scale them, or raise "
+                        "minimum_noise",
+                        std::isfinite(value) ? "has derivatives that are" : "is", largest(x), largest(y)));
 }
 
 }  // namespace talkgraph

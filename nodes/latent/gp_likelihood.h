@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "nodes/latent/cholesky.h"
 #include "nodes/latent/kernel.h"
@@ -20,16 +23,20 @@ struct GpGradient {
 
 /// ln p(Y | X) of D independent Gaussian processes with one covariance, a true
 /// density: Σ_d ln N(y_d; 0, K). One type derives from it for each
-/// approximation of K; evaluating uses its memory again.
+/// approximation of K; evaluating uses its memory again, so that evaluations of
+/// one size allocate nothing but the first. No jitter is part of a model: it is
+/// added where a matrix cannot be factorised without, and derivatives are those
+/// of the value with it.
 class GpLikelihood {
  public:
   virtual ~GpLikelihood() = default;
   /// Whether inducing points are used; where not, `u` is ignored and may be empty.
   virtual bool has_inducing() const = 0;
-  /// X is N × d, U k × d, Y N × D. Throws FactorisationError.
+  /// X is N × d, U k × d, Y N × D. Throws FactorisationError where the value or a
+  /// derivative cannot be computed or is not finite, std::invalid_argument where sizes do not fit.
   virtual double evaluate(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u, const ConstMatrix& y,
                           GpGradient* gradient) = 0;
-  /// Basis, weights and reduction of the process given the data (scale and mean stay empty).
+  /// Basis, weights and root of the process given the data (scale and mean stay empty).
   virtual GaussianProcess posterior(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u,
                                     const ConstMatrix& y) = 0;
   /// Largest jitter share used since the start.
@@ -37,6 +44,9 @@ class GpLikelihood {
 
  protected:
   void note(const Cholesky& c) { jitter_ = std::max(jitter_, c.jitter()); }
+  static void check(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& y);
+  static void check_finite(double value, const GpGradient* gradient, const ConstMatrix& x, const ConstMatrix& u,
+                           const ConstMatrix& y);
 
  private:
   double jitter_ = 0;
@@ -58,33 +68,117 @@ class FullLikelihood : public GpLikelihood {
   Eigen::MatrixXd covariance_, whitened_, alpha_, inverse_, g_;
 };
 
-/// Fully independent training conditional (Snelson and Ghahramani 2006):
-/// K = Q + diag(k(X, X) − Q) + white·I, Q = K_fu K_uu⁻¹ K_uf. O(N k²).
-/// K_uu has `jitter` times its mean diagonal added, which is part of the model
-/// (its derivative is taken).
-class FitcLikelihood : public GpLikelihood {
+/// K = Q + Λ with Q = K_fu K_uu⁻¹ K_uf and Λ block diagonal, in whitened form: with Q = V Vᵀ, Λ = R Rᵀ and
+/// A = I + Vᵀ Λ⁻¹ V, ln|K| = ln|Λ| + ln|A|. O(N k²). The types derived from it say what Λ is.
+/// Frames are taken a block at a time, which is what stays in the processor's cache.
+class LowRankLikelihood : public GpLikelihood {
  public:
-  explicit FitcLikelihood(double jitter = 1e-6) : base_jitter_(jitter) {}
-  bool has_inducing() const override { return true; }
+  bool has_inducing() const final { return true; }
   double evaluate(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u, const ConstMatrix& y,
-                  GpGradient* gradient) override;
+                  GpGradient* gradient) final;
   GaussianProcess posterior(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u,
-                            const ConstMatrix& y) override;
+                            const ConstMatrix& y) final;
+
+ protected:
+  /// n frames, from `first`.
+  struct Block {
+    Eigen::Index first = 0, n = 0;
+    KernelMatrix cross;             // K_fu
+    Eigen::MatrixXd v;              // K_fu Lu⁻ᵀ
+    Eigen::MatrixXd whitened;       // R⁻¹ V
+    Eigen::MatrixXd outputs;        // R⁻¹ Y
+    Eigen::VectorXd conditional;    // diagonal of k(X, X) − Q
+    KernelMatrix own;               // k(X, X), where Λ has more than a diagonal
+    Eigen::MatrixXd covariance, g;  // Λ, and the derivative by it, where it has more than a diagonal
+    Cholesky factor;                // of that
+    Eigen::VectorXd lambda, root;   // the diagonal of a diagonal Λ, and its square root
+  };
+
+  /// Lengths of the blocks that N frames are taken in.
+  virtual const std::vector<Eigen::Index>& lengths(Eigen::Index n) = 0;
+  /// Computes Λ of a block and brings `whitened` (V) and `outputs` (Y) to R⁻¹V and R⁻¹Y; returns −½ D ln|Λ| and
+  /// whatever else the type adds to ln p.
+  virtual double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) = 0;
+  /// M ← R⁻ᵀ M.
+  virtual void unwhiten(const Block& block, MatrixView m) const = 0;
+  /// From α = K⁻¹Y and S = R⁻¹V La⁻ᵀ of the block, which give the derivative by Λ, ½(ααᵀ − D R⁻ᵀ(I − SSᵀ)R⁻¹), adds
+  /// to the derivatives by V, by the block's inputs and the kernel's parameters.
+  virtual void differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
+                             const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) = 0;
 
  private:
-  void factorise(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u, const ConstMatrix& y);
-  void differentiate(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u, const ConstMatrix& y,
-                     GpGradient& gradient);
-  double base_jitter_;
-  KernelMatrix kuu_, kuf_;
+  void divide(Eigen::Index n);
+  double factorise(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u, const ConstMatrix& y);
+  void add_gradient(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u, GpGradient& gradient);
+
+  std::vector<Block> blocks_;
+  KernelMatrix kuu_;
   Cholesky lu_, la_;
-  Eigen::MatrixXd v_;        // Lu⁻¹ K_uf
-  Eigen::MatrixXd vs_;       // V Λ^−½
-  Eigen::MatrixXd a_;        // I + Vs Vsᵀ
-  Eigen::MatrixXd ys_, c_;   // Λ^−½ Y, La⁻¹ Vs Ys
-  Eigen::MatrixXd weights_;  // Lu⁻ᵀ La⁻ᵀ c
-  Eigen::MatrixXd s_, p_, g_uu_, square_;
-  Eigen::VectorXd k_diagonal_, lambda_, g_diagonal_;
+  Eigen::MatrixXd a_, c_, b_, weights_;               // A, La⁻¹ Σ (R⁻¹V)ᵀ R⁻¹Y, La⁻ᵀ c, Lu⁻ᵀ b
+  Eigen::MatrixXd lu_inverse_, la_inverse_, e_;       // e: (dL/dV)ᵀ V
+  Eigen::MatrixXd alpha_, v_gradient_, uu_gradient_;  // of one block, of one block, of K_uu
 };
+
+/// A low-rank likelihood whose Λ is diagonal; types differ in what they make of the conditional variances
+/// c_n = k(x_n, x_n) − q(x_n, x_n), which are never below 0.
+class DiagonalLikelihood : public LowRankLikelihood {
+ protected:
+  /// Λ from c and the variance of the noise; returns what is added to ln p for each output dimension.
+  virtual double noise(const Eigen::VectorXd& conditional, double white, Eigen::VectorXd& lambda) const = 0;
+  /// From the derivative by Λ that by c, in its place; returns that by the variance of the noise.
+  virtual double noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
+                                Eigen::VectorXd& g) const = 0;
+
+ private:
+  const std::vector<Eigen::Index>& lengths(Eigen::Index n) final;
+  double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) final;
+  void unwhiten(const Block& block, MatrixView m) const final;
+  void differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
+                     const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) final;
+
+  std::vector<Eigen::Index> lengths_;
+  Eigen::VectorXd diagonal_, g_;
+};
+
+/// Deterministic training conditional (Seeger, Williams and Lawrence 2003): Λ = white·I.
+class DtcLikelihood : public DiagonalLikelihood {
+  double noise(const Eigen::VectorXd& conditional, double white, Eigen::VectorXd& lambda) const override;
+  double noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
+                        Eigen::VectorXd& g) const override;
+};
+
+/// Fully independent training conditional (Snelson and Ghahramani 2006): Λ = diag(k(X, X) − Q) + white·I.
+class FitcLikelihood : public DiagonalLikelihood {
+  double noise(const Eigen::VectorXd& conditional, double white, Eigen::VectorXd& lambda) const override;
+  double noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
+                        Eigen::VectorXd& g) const override;
+};
+
+/// The lower bound of Titsias (2009): that of DTC less D/(2·white) · tr(k(X, X) − Q). Not above the full density.
+class VariationalLikelihood : public DiagonalLikelihood {
+  double noise(const Eigen::VectorXd& conditional, double white, Eigen::VectorXd& lambda) const override;
+  double noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
+                        Eigen::VectorXd& g) const override;
+};
+
+/// Partially independent training conditional (Quiñonero-Candela and Rasmussen 2005):
+/// Λ = blockdiag(k(X, X) − Q) + white·I.
+class PitcLikelihood : public LowRankLikelihood {
+ public:
+  /// Lengths of the blocks, which sum to N; see blocks_within().
+  explicit PitcLikelihood(std::vector<Eigen::Index> blocks) : lengths_(std::move(blocks)) {}
+
+ private:
+  const std::vector<Eigen::Index>& lengths(Eigen::Index n) override;
+  double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) override;
+  void unwhiten(const Block& block, MatrixView m) const override;
+  void differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
+                     const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) override;
+
+  std::vector<Eigen::Index> lengths_;
+};
+
+/// Sequences cut into blocks of at most `most` frames, of one sequence each and as equal as may be.
+std::vector<Eigen::Index> blocks_within(const std::vector<std::int64_t>& sequences, Eigen::Index most);
 
 }  // namespace talkgraph

@@ -1,6 +1,11 @@
 #include "nodes/latent/kernel.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <stdexcept>
+
+#include "nodes/latent/rbf_loops.h"
 
 namespace talkgraph {
 
@@ -13,7 +18,12 @@ struct Overload : F... {
 template <class... F>
 Overload(F...) -> Overload<F...>;
 
-Eigen::Index count(const KernelTerm& term) { return std::holds_alternative<RbfTerm>(term) ? 2 : 1; }
+Eigen::Index count(const KernelTerm& term) {
+  return std::visit(Overload{[](const RbfTerm&) -> Eigen::Index { return 2; },
+                             [](const ArdTerm& t) { return 1 + t.inverse_widths.size(); },
+                             [](const auto&) -> Eigen::Index { return 1; }},
+                    term);
+}
 
 /// Calls f(term, index of its first log parameter) for every term.
 template <class K, class F>
@@ -39,6 +49,11 @@ std::vector<std::string> parameter_names(const Kernel& kernel) {
                           names.push_back("rbf_variance");
                           names.push_back("inverse_width");
                         },
+                        [&](const ArdTerm& t, Eigen::Index) {
+                          names.push_back("ard_variance");
+                          for (Eigen::Index c = 1; c <= t.inverse_widths.size(); ++c)
+                            names.push_back("inverse_width_" + std::to_string(c));
+                        },
                         [&](const LinearTerm&, Eigen::Index) { names.push_back("linear"); },
                         [&](const BiasTerm&, Eigen::Index) { names.push_back("bias"); },
                         [&](const WhiteTerm&, Eigen::Index) { names.push_back("white"); }});
@@ -51,6 +66,10 @@ Eigen::VectorXd log_parameters(const Kernel& kernel) {
                           logs[i] = std::log(t.variance);
                           logs[i + 1] = std::log(t.inverse_width);
                         },
+                        [&](const ArdTerm& t, Eigen::Index i) {
+                          logs[i] = std::log(t.variance);
+                          logs.segment(i + 1, t.inverse_widths.size()) = t.inverse_widths.array().log();
+                        },
                         [&](const WhiteTerm& t, Eigen::Index i) { logs[i] = std::log(t.variance - t.floor); },
                         [&](const auto& t, Eigen::Index i) { logs[i] = std::log(t.variance); }});
   return logs;
@@ -60,6 +79,10 @@ void set_log_parameters(Kernel& kernel, const Eigen::Ref<const Eigen::VectorXd>&
   each(kernel, Overload{[&](RbfTerm& t, Eigen::Index i) {
                           t.variance = std::exp(logs[i]);
                           t.inverse_width = std::exp(logs[i + 1]);
+                        },
+                        [&](ArdTerm& t, Eigen::Index i) {
+                          t.variance = std::exp(logs[i]);
+                          t.inverse_widths = logs.segment(i + 1, t.inverse_widths.size()).array().exp();
                         },
                         [&](WhiteTerm& t, Eigen::Index i) { t.variance = t.floor + std::exp(logs[i]); },
                         [&](auto& t, Eigen::Index i) { t.variance = std::exp(logs[i]); }});
@@ -79,69 +102,99 @@ void white_gradient(const Kernel& kernel, double derivative, VectorView logs) {
 
 void diagonal(const Kernel& kernel, const ConstMatrix& x, VectorView values) {
   values.setZero();
-  each(kernel, Overload{[&](const RbfTerm& t, Eigen::Index) { values.array() += t.variance; },
-                        [&](const LinearTerm& t, Eigen::Index) { values += t.variance * x.rowwise().squaredNorm(); },
-                        [&](const BiasTerm& t, Eigen::Index) { values.array() += t.variance; },
-                        [](const WhiteTerm&, Eigen::Index) {}});
+  each(kernel, Overload{[&](const LinearTerm& t, Eigen::Index) {
+                          for (Eigen::Index c = 0; c < x.cols(); ++c) values += t.variance * x.col(c).cwiseAbs2();
+                        },
+                        [](const WhiteTerm&, Eigen::Index) {},
+                        [&](const auto& t, Eigen::Index) { values.array() += t.variance; }});
 }
 
 void diagonal_gradient(const Kernel& kernel, const ConstMatrix& x, const Eigen::Ref<const Eigen::VectorXd>& g,
                        MatrixView x_gradient, VectorView logs) {
-  each(kernel, Overload{[&](const RbfTerm& t, Eigen::Index i) { logs[i] += t.variance * g.sum(); },
-                        [&](const LinearTerm& t, Eigen::Index i) {
-                          logs[i] += t.variance * g.dot(x.rowwise().squaredNorm());
-                          for (Eigen::Index c = 0; c < x.cols(); ++c)
+  each(kernel, Overload{[&](const LinearTerm& t, Eigen::Index i) {
+                          for (Eigen::Index c = 0; c < x.cols(); ++c) {
+                            logs[i] += t.variance * g.dot(x.col(c).cwiseAbs2());
                             x_gradient.col(c).array() += 2 * t.variance * g.array() * x.col(c).array();
+                          }
                         },
-                        [&](const BiasTerm& t, Eigen::Index i) { logs[i] += t.variance * g.sum(); },
-                        [](const WhiteTerm&, Eigen::Index) {}});
+                        [](const WhiteTerm&, Eigen::Index) {},
+                        [&](const auto& t, Eigen::Index i) { logs[i] += t.variance * g.sum(); }});
+}
+
+void require_dimension(const Kernel& kernel, Eigen::Index dimension) {
+  each(kernel, Overload{[&](const ArdTerm& t, Eigen::Index) {
+                          if (t.inverse_widths.size() != dimension)
+                            throw std::invalid_argument(
+                                fmt::format("an ARD kernel of {} inverse widths, points of {} dimensions",
+                                            t.inverse_widths.size(), dimension));
+                        },
+                        [](const auto&, Eigen::Index) {}});
+}
+
+void KernelMatrix::add_rbf(double variance, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& values) {
+  values.resize(a.rows(), b.rows());
+  for (Eigen::Index j = 0; j < b.rows(); ++j) {
+    point_ = b.row(j);
+    rbf::values(variance, widths_.data(), a.cols(), a.data(), a.outerStride(), a.rows(), point_.data(),
+                values.col(j).data());
+  }
+  value_ += values;
 }
 
 const Eigen::MatrixXd& KernelMatrix::compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b) {
+  require_dimension(kernel, a.cols());
   value_.setZero(a.rows(), b.rows());
-  a_norm_ = a.rowwise().squaredNorm();
-  b_norm_ = b.rowwise().squaredNorm();
-  product_.resize(a.rows(), b.rows());
-  product_.noalias() = a * b.transpose();
   rbf_.resize(kernel.terms.size());
   std::size_t index = 0;
   each(kernel, Overload{[&](const RbfTerm& t, Eigen::Index) {
-                          Eigen::MatrixXd& k = rbf_[index++];
-                          k.resize(a.rows(), b.rows());
-                          for (Eigen::Index j = 0; j < b.rows(); ++j)
-                            k.col(j) =
-                                t.variance * (-0.5 * t.inverse_width *
-                                              (a_norm_.array() + b_norm_[j] - 2 * product_.col(j).array()).max(0.0))
-                                                 .exp();
-                          value_ += k;
+                          widths_.setConstant(a.cols(), t.inverse_width);
+                          add_rbf(t.variance, a, b, rbf_[index++]);
                         },
-                        [&](const LinearTerm& t, Eigen::Index) { value_ += t.variance * product_; },
+                        [&](const ArdTerm& t, Eigen::Index) {
+                          widths_ = t.inverse_widths;
+                          add_rbf(t.variance, a, b, rbf_[index++]);
+                        },
+                        [&](const LinearTerm& t, Eigen::Index) { value_.noalias() += t.variance * a * b.transpose(); },
                         [&](const BiasTerm& t, Eigen::Index) { value_.array() += t.variance; },
                         [](const WhiteTerm&, Eigen::Index) {}});
   return value_;
 }
 
+/// Returns the derivative by the log variance; those by the log inverse widths are −½ · inverse width · squares_.
+double KernelMatrix::rbf_gradient(const Eigen::MatrixXd& values, const ConstMatrix& a, const ConstMatrix& b,
+                                  const ConstMatrix& g, MatrixView a_gradient, MatrixView b_gradient) {
+  const Eigen::Index n = a.rows(), d = a.cols();
+  a_sum_.setZero(n, d);
+  squares_.setZero(d);
+  weights_.resize(n);
+  double sum = 0;
+  for (Eigen::Index j = 0; j < b.rows(); ++j) {
+    point_ = b.row(j);
+    total_.setZero(d);
+    sum += rbf::pulls(g.col(j).data(), values.col(j).data(), d, a.data(), a.outerStride(), n, point_.data(),
+                      weights_.data(), a_sum_.data(), n, total_.data(), squares_.data());
+    b_gradient.row(j) += total_.cwiseProduct(widths_.transpose());
+  }
+  for (Eigen::Index c = 0; c < d; ++c) a_gradient.col(c) -= widths_[c] * a_sum_.col(c);
+  return sum;
+}
+
 void KernelMatrix::gradient(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b, const ConstMatrix& g,
                             MatrixView a_gradient, MatrixView b_gradient, VectorView logs) {
-  a_sum_.resize(a.rows(), a.cols());
-  b_sum_.resize(b.rows(), b.cols());
-  const auto add_rbf = [&](const RbfTerm& t, const Eigen::MatrixXd& k, Eigen::Index i) {
-    product_ = g.cwiseProduct(k);
-    a_total_ = product_.rowwise().sum();
-    b_total_ = product_.colwise().sum().transpose();
-    a_sum_.noalias() = product_ * b;
-    b_sum_.noalias() = product_.transpose() * a;
-    const double squares = a_total_.dot(a_norm_) + b_total_.dot(b_norm_) - 2 * a_sum_.cwiseProduct(a).sum();
-    logs[i] += a_total_.sum();
-    logs[i + 1] -= 0.5 * t.inverse_width * squares;
-    for (Eigen::Index c = 0; c < a.cols(); ++c) {
-      a_gradient.col(c) += t.inverse_width * (a_sum_.col(c) - a_total_.cwiseProduct(a.col(c)));
-      b_gradient.col(c) += t.inverse_width * (b_sum_.col(c) - b_total_.cwiseProduct(b.col(c)));
-    }
-  };
   std::size_t index = 0;
-  each(kernel, Overload{[&](const RbfTerm& t, Eigen::Index i) { add_rbf(t, rbf_[index++], i); },
+  each(kernel, Overload{[&](const RbfTerm& t, Eigen::Index i) {
+                          widths_.setConstant(a.cols(), t.inverse_width);
+                          logs[i] += rbf_gradient(rbf_[index++], a, b, g, a_gradient, b_gradient);
+                          logs[i + 1] -= 0.5 * t.inverse_width * squares_.sum();
+                        },
+                        [&](const ArdTerm& t, Eigen::Index i) {
+                          widths_ = t.inverse_widths;
+                          logs[i] += rbf_gradient(rbf_[index++], a, b, g, a_gradient, b_gradient);
+                          logs.segment(i + 1, widths_.size()) -= 0.5 * widths_.cwiseProduct(squares_);
+                        },
                         [&](const LinearTerm& t, Eigen::Index i) {
+                          a_sum_.resize(a.rows(), a.cols());
+                          b_sum_.resize(b.rows(), b.cols());
                           a_sum_.noalias() = g * b;
                           b_sum_.noalias() = g.transpose() * a;
                           logs[i] += t.variance * a_sum_.cwiseProduct(a).sum();

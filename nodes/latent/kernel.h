@@ -12,9 +12,11 @@ using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
 using MatrixView = Eigen::Ref<Eigen::MatrixXd>;
 using VectorView = Eigen::Ref<Eigen::VectorXd>;
 
-/// Number of log parameters: an RBF term has two (variance, inverse width), the others one (variance).
+/// Number of log parameters: an RBF term has two (variance, inverse width), one with ARD 1 + d, the others one
+/// (variance).
 Eigen::Index parameter_count(const Kernel& kernel);
-/// Their names, in order: "rbf_variance", "inverse_width", "linear", "bias", "white".
+/// Their names, in order: "rbf_variance", "inverse_width", or "ard_variance", "inverse_width_1", ..., or "linear",
+/// "bias", "white".
 std::vector<std::string> parameter_names(const Kernel& kernel);
 /// Natural logarithms of the parameters, of white noise without its floor.
 Eigen::VectorXd log_parameters(const Kernel& kernel);
@@ -31,6 +33,9 @@ void diagonal(const Kernel& kernel, const ConstMatrix& x, VectorView values);
 void diagonal_gradient(const Kernel& kernel, const ConstMatrix& x, const Eigen::Ref<const Eigen::VectorXd>& g,
                        MatrixView x_gradient, VectorView logs);
 
+/// Throws std::invalid_argument if an ARD term has not as many inverse widths as there are dimensions.
+void require_dimension(const Kernel& kernel, Eigen::Index dimension);
+
 /// The matrix k(A, B) without white noise, with what its gradient needs; its
 /// memory is used again by the next computation of the same size.
 class KernelMatrix {
@@ -46,10 +51,14 @@ class KernelMatrix {
                 MatrixView a_gradient, MatrixView b_gradient, VectorView logs);
 
  private:
-  Eigen::MatrixXd value_, product_, a_sum_, b_sum_;
-  std::vector<Eigen::MatrixXd> rbf_;  // of each RBF term
-  Eigen::VectorXd a_norm_, b_norm_;
-  Eigen::VectorXd a_total_, b_total_;
+  void add_rbf(double variance, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& values);
+  double rbf_gradient(const Eigen::MatrixXd& values, const ConstMatrix& a, const ConstMatrix& b, const ConstMatrix& g,
+                      MatrixView a_gradient, MatrixView b_gradient);
+
+  Eigen::MatrixXd value_, a_sum_, b_sum_;
+  std::vector<Eigen::MatrixXd> rbf_;            // of each RBF term
+  Eigen::VectorXd widths_, squares_, weights_;  // inverse widths of the term at hand; Σ w δ² of every dimension
+  Eigen::RowVectorXd point_, total_;
 };
 
 }  // namespace talkgraph

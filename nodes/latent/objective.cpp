@@ -1,12 +1,16 @@
 #include "nodes/latent/objective.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace talkgraph {
 
 GradientCheck check_gradient(Objective& objective, const Eigen::VectorXd& parameters, double step) {
   GradientCheck result;
+  for (Eigen::Index i = 0; i < parameters.size(); ++i) result.names.push_back(objective.name(i));
   double with = 0, without = 0;
   result.numeric.setZero(parameters.size());
   result.evaluated =
@@ -28,6 +32,22 @@ GradientCheck check_gradient(Objective& objective, const Eigen::VectorXd& parame
   const double size = std::max(1.0, result.numeric.cwiseAbs().maxCoeff());
   result.worst = (result.analytic - result.numeric).cwiseAbs().maxCoeff(&result.where) / size;
   return result;
+}
+
+std::string GradientCheck::report(std::size_t rows) const {
+  if (!evaluated) return "gradient check: the cost could not be evaluated at every point\n";
+  std::string text = fmt::format("gradient check of {} parameters: largest difference {:.2g}{}{}\n", analytic.size(),
+                                 worst, where < 0 ? "" : " at " + names[static_cast<std::size_t>(where)],
+                                 cost_consistent ? "" : "; the cost depends on whether the gradient is asked for");
+  const Eigen::VectorXd difference = (analytic - numeric).cwiseAbs();
+  std::vector<Eigen::Index> order(names.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return difference[a] > difference[b]; });
+  order.resize(std::min(rows, order.size()));
+  for (const auto i : order)
+    text += fmt::format("{:<32} analytic {:>15.8g}  numeric {:>15.8g}  difference {:.2g}\n",
+                        names[static_cast<std::size_t>(i)], analytic[i], numeric[i], difference[i]);
+  return text;
 }
 
 }  // namespace talkgraph

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
+#include <vector>
 
 namespace talkgraph {
 
@@ -14,6 +16,8 @@ class Objective {
   /// cost is the same bits either way. Returns false where the cost cannot be
   /// evaluated (a matrix that cannot be factorised); optimisers step back.
   virtual bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) = 0;
+  /// What a reader calls the parameter.
+  virtual std::string name(Eigen::Index parameter) const { return "parameter " + std::to_string(parameter); }
 };
 
 /// What comparing an objective's gradient with central differences gave.
@@ -23,6 +27,10 @@ struct GradientCheck {
   double worst = 0;              ///< largest |analytic − numeric| over max(1, largest |numeric|)
   Eigen::Index where = -1;       ///< parameter of the largest difference
   Eigen::VectorXd analytic, numeric;
+  std::vector<std::string> names;
+
+  /// One line that says how the check went and, where derivatives differ, a table of the `rows` largest differences.
+  std::string report(std::size_t rows = 10) const;
 };
 
 /// Central differences of fourth order with steps of `step` · max(1, |parameter|).

@@ -9,11 +9,17 @@ void Predictive::compute(const GaussianProcess& gp, const ConstMatrix& x) {
   const Eigen::MatrixXd& k = kernel_.compute(gp.kernel, x, gp.basis);
   mean_.resize(x.rows(), gp.weights.cols());
   mean_.noalias() = k * gp.weights;
-  reduced_.resize(x.rows(), gp.basis.rows());
-  reduced_.noalias() = k * gp.reduction;
   variance_.resize(x.rows());
   diagonal(gp.kernel, x, variance_);
-  variance_ -= reduced_.cwiseProduct(k).rowwise().sum();
+  if (gp.root.size() > 0) {
+    rooted_.resize(x.rows(), gp.root.cols());
+    rooted_.noalias() = k * gp.root;
+    variance_ -= rooted_.rowwise().squaredNorm();
+  } else {
+    reduced_.resize(x.rows(), gp.basis.rows());
+    reduced_.noalias() = k * gp.reduction;
+    variance_ -= reduced_.cwiseProduct(k).rowwise().sum();
+  }
   const double noise = white_variance(gp.kernel);
   variance_ = variance_.cwiseMax(0);
   variance_.array() += noise;
@@ -36,6 +42,10 @@ void Predictive::gradient(const GaussianProcess& gp, const ConstMatrix& x, doubl
     if (variance_[t] <= noise) variance_gradient_[t] = 0;
   residual_.array().colwise() *= weight / variance_.array();
   y_gradient -= residual_;
+  if (gp.root.size() > 0) {
+    reduced_.resize(x.rows(), gp.basis.rows());
+    reduced_.noalias() = rooted_ * gp.root.transpose();
+  }
   g_.resize(x.rows(), gp.basis.rows());
   g_.noalias() = residual_ * gp.weights.transpose();
   for (Eigen::Index j = 0; j < g_.cols(); ++j)

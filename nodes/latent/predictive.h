@@ -25,7 +25,7 @@ class Predictive {
 
  private:
   KernelMatrix kernel_;
-  Eigen::MatrixXd mean_, residual_, reduced_, g_, basis_gradient_;
+  Eigen::MatrixXd mean_, residual_, rooted_, reduced_, g_, basis_gradient_;
   Eigen::VectorXd variance_, variance_gradient_, logs_;
 };
 

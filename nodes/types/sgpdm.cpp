@@ -8,43 +8,66 @@ namespace talkgraph {
 
 namespace {
 
+/// A term as it is stored: numbers that its kind does not have are zero.
 struct StoredTerm {
   std::string kind;
-  double variance = 0, other = 0;
+  double variance = 0;
+  std::vector<double> inverse_widths;  // of "rbf" one, of "ard" one a dimension
+  double floor = 0;
 };
 
-StoredTerm stored(const RbfTerm& t) { return {"rbf", t.variance, t.inverse_width}; }
-StoredTerm stored(const LinearTerm& t) { return {"linear", t.variance, 0}; }
-StoredTerm stored(const BiasTerm& t) { return {"bias", t.variance, 0}; }
-StoredTerm stored(const WhiteTerm& t) { return {"white", t.variance, t.floor}; }
+StoredTerm stored(const RbfTerm& t) { return {"rbf", t.variance, {t.inverse_width}}; }
+StoredTerm stored(const ArdTerm& t) { return {"ard", t.variance, {t.inverse_widths.begin(), t.inverse_widths.end()}}; }
+StoredTerm stored(const LinearTerm& t) { return {"linear", t.variance, {}}; }
+StoredTerm stored(const BiasTerm& t) { return {"bias", t.variance, {}}; }
+StoredTerm stored(const WhiteTerm& t) { return {"white", t.variance, {}, t.floor}; }
 
 KernelTerm restored(const StoredTerm& t) {
-  if (t.kind == "rbf") return RbfTerm{t.variance, t.other};
+  const auto& widths = t.inverse_widths;
+  if (t.kind == "rbf" && widths.size() == 1) return RbfTerm{t.variance, widths[0]};
+  if (t.kind == "ard")
+    return ArdTerm{t.variance, Eigen::VectorXd::Map(widths.data(), static_cast<Eigen::Index>(widths.size()))};
   if (t.kind == "linear") return LinearTerm{t.variance};
   if (t.kind == "bias") return BiasTerm{t.variance};
-  if (t.kind == "white") return WhiteTerm{t.variance, t.other};
+  if (t.kind == "white") return WhiteTerm{t.variance, t.floor};
   throw std::runtime_error("unknown kernel term \"" + t.kind + "\" in a stored model; train it anew");
 }
 
 }  // namespace
 
+/// One entry a term; the inverse widths of all terms stand one after another, `widths` of them a term.
 void fields(Archive& ar, Kernel& k) {
   std::vector<std::string> kinds;
-  std::vector<double> variances, others;
+  std::vector<double> variances, inverse_widths, floors;
+  std::vector<std::int64_t> widths;
   for (const auto& term : k.terms) {
     const StoredTerm s = std::visit([](const auto& t) { return stored(t); }, term);
     kinds.push_back(s.kind);
     variances.push_back(s.variance);
-    others.push_back(s.other);
+    widths.push_back(static_cast<std::int64_t>(s.inverse_widths.size()));
+    inverse_widths.insert(inverse_widths.end(), s.inverse_widths.begin(), s.inverse_widths.end());
+    floors.push_back(s.floor);
   }
   ar("kinds", kinds);
   ar("variances", variances);
-  ar("others", others);
+  ar("widths", widths);
+  ar("inverse_widths", inverse_widths);
+  ar("floors", floors);
   if (!ar.loading()) return;
-  if (variances.size() != kinds.size() || others.size() != kinds.size())
-    throw std::runtime_error("a stored kernel has " + std::to_string(kinds.size()) + " terms but not as many values");
+  const std::size_t terms = kinds.size();
+  if (variances.size() != terms || widths.size() != terms || floors.size() != terms)
+    throw std::runtime_error("a stored kernel has " + std::to_string(terms) + " terms but not as many values");
   k.terms.clear();
-  for (std::size_t i = 0; i < kinds.size(); ++i) k.terms.push_back(restored({kinds[i], variances[i], others[i]}));
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < terms; ++i) {
+    const auto count = static_cast<std::size_t>(widths[i]);
+    if (widths[i] < 0 || count > inverse_widths.size() - at)
+      throw std::runtime_error("a stored kernel has fewer inverse widths than its terms say");
+    const auto first = inverse_widths.begin() + static_cast<std::ptrdiff_t>(at);
+    k.terms.push_back(
+        restored({kinds[i], variances[i], {first, first + static_cast<std::ptrdiff_t>(count)}, floors[i]}));
+    at += count;
+  }
 }
 
 void fields(Archive& ar, GaussianProcess& g) {
@@ -52,6 +75,7 @@ void fields(Archive& ar, GaussianProcess& g) {
   ar("basis", g.basis);
   ar("weights", g.weights);
   ar("reduction", g.reduction);
+  ar("root", g.root);
   ar("mean", g.mean);
   ar("scale", g.scale);
 }

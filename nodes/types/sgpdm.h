@@ -16,6 +16,11 @@ struct RbfTerm {
   double variance = 1;
   double inverse_width = 1;
 };
+/// k(a, b) = variance · exp(−½ Σ_i inverse_widths_i (a_i − b_i)²): a dimension of inverse width 0 does not matter.
+struct ArdTerm {
+  double variance = 1;
+  Eigen::VectorXd inverse_widths;  ///< one a dimension
+};
 /// k(a, b) = variance · a·b.
 struct LinearTerm {
   double variance = 1;
@@ -29,7 +34,7 @@ struct WhiteTerm {
   double variance = 0.1;
   double floor = 0;
 };
-using KernelTerm = std::variant<RbfTerm, LinearTerm, BiasTerm, WhiteTerm>;
+using KernelTerm = std::variant<RbfTerm, ArdTerm, LinearTerm, BiasTerm, WhiteTerm>;
 
 /// A covariance function: the sum of its terms.
 struct Kernel {
@@ -39,12 +44,15 @@ void fields(Archive& ar, Kernel& k);
 
 /// What prediction needs of a trained Gaussian process, in scaled output units:
 /// mean k(x, basis)·weights, variance k(x, x) + white − k(x, basis)·reduction·k(basis, x).
-/// Both the full process and the sparse approximations take this form.
+/// Both the full process and the sparse approximations take this form. Entries of
+/// the reduction grow as the inverse of the basis' covariance; its root, which loses
+/// half the digits of it, takes its place where there is one.
 struct GaussianProcess {
   Kernel kernel;
   Eigen::MatrixXd basis;      ///< K × d: training inputs, or inducing points
   Eigen::MatrixXd weights;    ///< K × D
-  Eigen::MatrixXd reduction;  ///< K × K, symmetric
+  Eigen::MatrixXd reduction;  ///< K × K, symmetric; empty where there is a root
+  Eigen::MatrixXd root;       ///< K × K, reduction = root·rootᵀ; may be empty
   Eigen::RowVectorXd mean;    ///< of the outputs, 1 × D
   Eigen::RowVectorXd scale;   ///< of the outputs, 1 × D: output = mean + scale · scaled output
 };
@@ -68,7 +76,7 @@ struct Sgpdm {
   double jitter = 0;                        ///< largest share of the mean variance added to a factorised matrix
 };
 template <>
-inline constexpr PortType port_type<Sgpdm>{"Sgpdm", 1};
+inline constexpr PortType port_type<Sgpdm>{"Sgpdm", 2};
 void fields(Archive& ar, Sgpdm& s);
 
 }  // namespace talkgraph

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "nodes/types/sgpdm.h"
 #include "tests/nodes/latent/gaussian.h"
@@ -17,7 +18,15 @@ double textbook_white(const Kernel& kernel);
 double textbook_density(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& y);
 
 Eigen::MatrixXd textbook_full(const Kernel& kernel, const Eigen::MatrixXd& x);
-Eigen::MatrixXd textbook_fitc(const Kernel& kernel, const Eigen::MatrixXd& x, const Eigen::MatrixXd& u, double jitter);
+/// K_fu K_uu⁻¹ K_uf.
+Eigen::MatrixXd textbook_q(const Kernel& kernel, const Eigen::MatrixXd& x, const Eigen::MatrixXd& u);
+Eigen::MatrixXd textbook_dtc(const Kernel& kernel, const Eigen::MatrixXd& x, const Eigen::MatrixXd& u);
+Eigen::MatrixXd textbook_fitc(const Kernel& kernel, const Eigen::MatrixXd& x, const Eigen::MatrixXd& u);
+Eigen::MatrixXd textbook_pitc(const Kernel& kernel, const Eigen::MatrixXd& x, const Eigen::MatrixXd& u,
+                              const std::vector<Eigen::Index>& blocks);
+/// Titsias' bound: the density of DTC less the trace term.
+double textbook_bound(const Kernel& kernel, const Eigen::MatrixXd& x, const Eigen::MatrixXd& u,
+                      const Eigen::MatrixXd& y);
 Eigen::MatrixXd textbook_inverse(const Eigen::MatrixXd& a);
 
 }  // namespace talkgraph::testing

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "nodes/latent/gp_likelihood.h"
+#include "nodes/latent/triangular.h"
+
+namespace talkgraph {
+
+void LowRankLikelihood::divide(Eigen::Index n) {
+  const auto& sizes = lengths(n);
+  blocks_.resize(sizes.size());
+  Eigen::Index first = 0, most = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    blocks_[i].first = first;
+    blocks_[i].n = sizes[i];
+    first += sizes[i];
+    most = std::max(most, sizes[i]);
+  }
+  alpha_.resize(most, c_.cols());
+  v_gradient_.resize(most, a_.cols());
+}
+
+/// Returns −½ D ln|Λ| and what else the type adds.
+double LowRankLikelihood::factorise(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u,
+                                    const ConstMatrix& y) {
+  check(kernel, x, y);
+  if (u.rows() == 0 || u.cols() != x.cols())
+    throw std::invalid_argument(
+        fmt::format("{} inducing points of {} dimensions for inputs of {}: it needs at least "
+                    "one, of the same dimension",
+                    u.rows(), u.cols(), x.cols()));
+  const Eigen::Index k = u.rows();
+  lu_.compute(kuu_.compute(kernel, u, u), 0, "the covariance of the inducing points");
+  note(lu_);
+  a_.setIdentity(k, k);
+  c_.setZero(k, y.cols());
+  divide(x.rows());
+  double value = 0;
+  for (Block& block : blocks_) {
+    const auto inputs = x.middleRows(block.first, block.n);
+    block.v = block.cross.compute(kernel, inputs, u);
+    solve_transposed_right(lu_.factor(), block.v);
+    block.whitened = block.v;
+    block.outputs = y.middleRows(block.first, block.n);
+    value += condition(kernel, inputs, block);
+    a_.selfadjointView<Eigen::Lower>().rankUpdate(block.whitened.transpose());
+    c_.noalias() += block.whitened.transpose() * block.outputs;
+  }
+  a_.triangularView<Eigen::StrictlyUpper>() = a_.transpose();
+  la_.compute(a_, 0, "the inner matrix I + VᵀΛ⁻¹V");
+  la_.factor().triangularView<Eigen::Lower>().solveInPlace(c_);
+  b_ = c_;
+  la_.factor().triangularView<Eigen::Lower>().transpose().solveInPlace(b_);
+  return value;
+}
+
+double LowRankLikelihood::evaluate(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u,
+                                   const ConstMatrix& y, GpGradient* gradient) {
+  double value = factorise(kernel, x, u, y);
+  const double n = static_cast<double>(y.rows()), d = static_cast<double>(y.cols());
+  double squares = -c_.squaredNorm();
+  for (const Block& block : blocks_) squares += block.outputs.squaredNorm();
+  value -= 0.5 * (n * d * std::log(2 * std::numbers::pi) + d * la_.log_determinant() + squares);
+  if (gradient) {
+    gradient->outputs.resize(y.rows(), y.cols());
+    add_gradient(kernel, x, u, *gradient);
+  }
+  check_finite(value, gradient, x, u, y);
+  return value;
+}
+
+// Let V not depend on Λ: then dL/dV = α bᵀ − D Λ⁻¹V A⁻¹, b = Vᵀα. What reaches V by way of Λ is added. V reaches the
+// likelihood by V Vᵀ alone, so that K_uu has −½ Lu⁻ᵀ (dL/dV)ᵀ V Lu⁻¹.
+// A is not below I, so that its inverted factor, of a norm of at most 1, is as good as solving with it.
+void LowRankLikelihood::add_gradient(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u,
+                                     GpGradient& gradient) {
+  const double d = static_cast<double>(c_.cols());
+  invert_lower(lu_.factor(), lu_inverse_);
+  invert_lower(la_.factor(), la_inverse_);
+  e_.setZero(u.rows(), u.rows());
+  for (Block& block : blocks_) {
+    const auto inputs = x.middleRows(block.first, block.n);
+    MatrixView x_gradient = gradient.inputs.middleRows(block.first, block.n);
+    MatrixView alpha = alpha_.topRows(block.n), v_gradient = v_gradient_.topRows(block.n);
+    multiply_transposed_right(la_inverse_, block.whitened);
+    alpha = block.outputs;
+    alpha.noalias() -= block.whitened * c_;
+    unwhiten(block, alpha);
+    gradient.outputs.middleRows(block.first, block.n) = -alpha;
+    v_gradient.noalias() = alpha * b_.transpose();
+    differentiate(kernel, inputs, block, alpha, block.whitened, v_gradient, x_gradient, gradient.kernel);
+    multiply_right(la_inverse_, block.whitened);
+    unwhiten(block, block.whitened);
+    v_gradient -= d * block.whitened;
+    e_.noalias() += v_gradient.transpose() * block.v;
+    multiply_right(lu_inverse_, v_gradient);
+    block.cross.gradient(kernel, inputs, u, v_gradient, x_gradient, gradient.inducing, gradient.kernel);
+  }
+  multiply_right(lu_inverse_, e_);
+  uu_gradient_ = e_.transpose();
+  multiply_right(lu_inverse_, uu_gradient_);
+  e_ = -0.25 * (uu_gradient_ + uu_gradient_.transpose());
+  lu_.add_jitter_gradient(e_);
+  kuu_.gradient(kernel, u, u, e_, gradient.inducing, gradient.inducing, gradient.kernel);
+}
+
+// The reduction is Lu⁻ᵀ (I − A⁻¹) Lu⁻¹; the eigenvalues of A are at least 1.
+GaussianProcess LowRankLikelihood::posterior(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u,
+                                             const ConstMatrix& y) {
+  factorise(kernel, x, u, y);
+  const auto lu_transposed = lu_.factor().transpose().triangularView<Eigen::Upper>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a_);
+  GaussianProcess gp;
+  gp.kernel = kernel;
+  gp.basis = u;
+  gp.weights = b_;
+  lu_transposed.solveInPlace(gp.weights);
+  gp.root = eigen.eigenvectors() * (1 - eigen.eigenvalues().array().max(1).inverse()).sqrt().matrix().asDiagonal();
+  lu_transposed.solveInPlace(gp.root);
+  return gp;
+}
+
+}  // namespace talkgraph

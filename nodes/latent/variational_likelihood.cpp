@@ -1,0 +1,17 @@
+#include "nodes/latent/gp_likelihood.h"
+
+namespace talkgraph {
+
+double VariationalLikelihood::noise(const Eigen::VectorXd& conditional, double white, Eigen::VectorXd& lambda) const {
+  lambda.setConstant(conditional.size(), white);
+  return -0.5 * conditional.sum() / white;
+}
+
+double VariationalLikelihood::noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
+                                             Eigen::VectorXd& g) const {
+  const double by_white = g.sum() + 0.5 * outputs * conditional.sum() / (white * white);
+  g.setConstant(-0.5 * outputs / white);
+  return by_white;
+}
+
+}  // namespace talkgraph
