@@ -1,12 +1,14 @@
 #include "nodes/corpus/landmarks.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -66,6 +68,46 @@ std::optional<std::int64_t> frame_of(const fs::path& file) {
   return digits && !stem.empty() ? std::optional(std::stoll(stem)) : std::nullopt;
 }
 
+/// "s001_012.pts" -> 12.
+std::int64_t last_number(const fs::path& file) {
+  constexpr auto digits = "0123456789";
+  const std::string stem = file.stem().string();
+  const auto end = stem.find_last_of(digits);
+  const auto begin = end == std::string::npos ? 0 : stem.find_last_not_of(digits, end) + 1;
+  if (end == std::string::npos || end - begin >= 12)
+    throw std::runtime_error(file.string() + ": its name does not end in the number of its frame, as 000012.pts does");
+  return std::stoll(stem.substr(begin, end + 1 - begin));
+}
+
+/// That no frame is left out, since the files after it would count for the frames before theirs. They are numbered from
+/// 0, or from wherever a clip of as many frames begins; from 1 where there is no clip to tell.
+void check_consecutive(const std::vector<std::string>& files, const LandmarkFiles& from,
+                       const std::function<Video()>& video) {
+  constexpr auto advice =
+      "if only some frames have landmarks, name their files after them, counted from 0 as 000012.pts, and say "
+      "\"sparse\": true in the manifest";
+  const auto first = last_number(files.front());
+  std::vector<std::int64_t> missing;
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const auto before = last_number(files[i - 1]), now = last_number(files[i]);
+    if (now <= before)
+      throw std::runtime_error(fmt::format("{}: frame {} is expected after \"{}\"", files[i], before + 1,
+                                           fs::path(files[i - 1]).filename().string()));
+    for (auto t = before + 1; t < now && missing.size() < 10; ++t) missing.push_back(t);
+  }
+  if (!missing.empty())
+    throw std::runtime_error(fmt::format("{}: there is no file of {} {}{}; {}", from.path,
+                                         missing.size() == 1 ? "frame" : "the frames", fmt::join(missing, ", "),
+                                         missing.size() == 10 ? ", ..." : "", advice));
+  const auto count = std::ssize(files);
+  if (first == 0 || (first == 1 && !video)) return;
+  const auto length = video ? video().source->frames() : 0;
+  if (length != count)
+    throw std::runtime_error(fmt::format("{}: has files of the frames {} to {}{}: which is the first?; {}", from.path,
+                                         first, first + count - 1,
+                                         video ? fmt::format(", and the clip {} frames", length) : "", advice));
+}
+
 /// Frames by number.
 using Frames = std::map<std::int64_t, Shape>;
 
@@ -78,7 +120,9 @@ void check_alike(const Frames& frames, const Shape& next, const std::string& fil
 Frames read_folder(const LandmarkFiles& from, const std::function<Video()>& video) {
   Frames frames;
   std::optional<cv::Size> size;
-  for (const auto& file : point_files(from.path)) {
+  const auto files = point_files(from.path);
+  if (!from.sparse) check_consecutive(files, from, video);
+  for (const auto& file : files) {
     const auto number = from.sparse ? frame_of(file) : std::optional(std::ssize(frames));
     if (!number) continue;
     const bool relative = ending_of(file) == ".asf";
@@ -97,24 +141,55 @@ Frames read_folder(const LandmarkFiles& from, const std::function<Video()>& vide
   return frames;
 }
 
+struct PointColumns {
+  std::optional<Eigen::Index> frame;
+  std::vector<Eigen::Index> points;  ///< of x0, y0, x1, y1, ...
+};
+
+/// By their names, in whatever order they are; without names in the order of points.
+PointColumns columns_of(const NumberTable& table, const std::string& path) {
+  constexpr auto needed = "landmarks need the columns x0,y0,x1,y1,... and maybe \"frame\" before them";
+  PointColumns out;
+  if (table.names.empty()) {
+    if (table.values.cols() % 2) throw std::runtime_error(fmt::format("{}: {}", path, needed));
+    out.points.resize(static_cast<std::size_t>(table.values.cols()));
+    std::iota(out.points.begin(), out.points.end(), Eigen::Index{0});
+    return out;
+  }
+  std::map<std::string, Eigen::Index> left;
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const auto words = words_of(lower_case(table.names[i]));
+    const auto name = fmt::format("{}", fmt::join(words, " "));
+    if (!left.emplace(name, i).second) throw std::runtime_error(fmt::format("{}: has two columns \"{}\"", path, name));
+  }
+  if (const auto frame = left.extract("frame")) out.frame = frame.mapped();
+  do {
+    for (const char axis : {'x', 'y'}) {
+      const auto name = fmt::format("{}{}", axis, out.points.size() / 2);
+      const auto column = left.extract(name);
+      if (!column)
+        throw std::runtime_error(fmt::format("{}: {}; it has no \"{}\"{}", path, needed, name,
+                                             left.empty() ? "" : ", but \"" + left.begin()->first + "\""));
+      out.points.push_back(column.mapped());
+    }
+  } while (!left.empty());
+  return out;
+}
+
 Frames read_csv_landmarks(const LandmarkFiles& from) {
   const NumberTable table = read_csv(from.path);
-  const bool counted = !table.names.empty() && table.names[0] == "frame";
-  const Eigen::Index columns = table.values.cols() - counted;
-  if (columns < 2 || columns % 2)
-    throw std::runtime_error(from.path +
-                             ": landmarks need the columns x0,y0,x1,y1,... and maybe \"frame\" before them");
-  if (from.sparse && !counted)
+  const auto columns = columns_of(table, from.path);
+  if (from.sparse && !columns.frame)
     throw std::runtime_error(from.path + ": landmarks of some frames need a first column \"frame\"");
   Frames frames;
   for (Eigen::Index t = 0; t < table.values.rows(); ++t) {
-    const double frame = counted ? table.values(t, 0) : static_cast<double>(t);
+    const double frame = columns.frame ? table.values(t, *columns.frame) : static_cast<double>(t);
     const int line = table.lines[static_cast<std::size_t>(t)];
     if (!from.sparse && frame != static_cast<double>(t))
       complain(from.path, line, fmt::format("frame {} is expected, got {}", t, frame));
     if (!(frame >= 0 && frame < 1e12 && frame == std::floor(frame)))
       complain(from.path, line, fmt::format("{} is no number of a frame", frame));
-    const Eigen::VectorXd points = table.values.row(t).tail(columns);
+    const Eigen::VectorXd points = table.values(t, columns.points);
     if (!frames.emplace(static_cast<std::int64_t>(frame), shape_of(points)).second)
       complain(from.path, line, fmt::format("frame {} stands here again", frame));
   }

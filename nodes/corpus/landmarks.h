@@ -25,9 +25,10 @@ Shape read_pts(const std::string& path);
 /// width and height. Errors as of read_pts.
 Shape read_asf(const std::string& path, cv::Size size);
 
-/// Landmarks of a clip, pixels from 0. A CSV has the columns x0,y0,x1,y1,... and maybe "frame" before them, HDF5 a data
-/// set of frames × points × 2 or frames × 2 points, where a frame without landmarks is nan; a folder a file a frame, in
-/// the order of their names. Sparse ones count frames from 0: files are named 000012.pts, other files are passed over;
+/// Landmarks of a clip, pixels from 0. A CSV has the columns x0,y0,x1,y1,... and maybe "frame" before them, in any
+/// order if it names them; HDF5 a data set of frames × points × 2 or frames × 2 points; a frame without landmarks is
+/// nan in both. A folder has a file a frame, whose names end in consecutive numbers from 0, or from anything if the
+/// clip has as many frames. Sparse ones count frames from 0: files are named 000012.pts, other files are passed over;
 /// the frames between have points that are nan. `video` is asked for the length of the clip (sparse) and the size of
 /// its pictures (.asf). Throws std::runtime_error that names the file, and the line where there are lines.
 LandmarkTrack read_landmarks(const LandmarkFiles& files, Rational rate, const std::function<Video()>& video = {});

@@ -20,8 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 static_assert(std::endian::native == std::endian::little, ".npy files are read as little-endian");
 
-bool is_header(const std::string& line) {
-  return std::any_of(line.begin(), line.end(), [](unsigned char c) { return std::isalpha(c) && c != 'e' && c != 'E'; });
+/// No cell is a number.
+bool is_header(const std::vector<std::string>& cells) {
+  return std::none_of(cells.begin(), cells.end(), [](const auto& cell) { return number_of(cell).has_value(); });
+}
+
+double number_or_nan(const std::string& cell, const std::string& path, int line) {
+  const auto value = number_of(cell);
+  return value && std::isnan(*value) ? *value : number_in(cell, path, line);
 }
 
 /// The value of a key of the Python dictionary that heads a .npy file.
@@ -55,10 +61,10 @@ Eigen::MatrixXd matrix_of(const char* data, Eigen::Index rows, Eigen::Index colu
 NumberTable read_csv(const std::string& path) {
   const auto lines = lines_of(read_text_file(path));
   NumberTable table;
-  std::size_t first = 0;
-  if (!lines.empty() && is_header(lines[0].text)) table.names = split(lines[first++].text, ',');
+  const auto head = lines.empty() ? std::vector<std::string>{} : split(lines[0].text, ',');
+  if (is_header(head)) table.names = head;
+  const std::size_t first = table.names.empty() ? 0 : 1, columns = head.size();
   if (lines.size() == first) throw std::runtime_error(path + ": holds no numbers");
-  const std::size_t columns = first ? table.names.size() : split(lines[0].text, ',').size();
   table.values.resize(std::ssize(lines) - static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(columns));
   for (std::size_t i = first; i < lines.size(); ++i) {
     const auto cells = split(lines[i].text, ',');
@@ -67,7 +73,7 @@ NumberTable read_csv(const std::string& path) {
       complain(path, lines[i].number, fmt::format("{} columns are expected, got {}", columns, cells.size()));
     for (std::size_t c = 0; c < columns; ++c)
       table.values(static_cast<Eigen::Index>(i - first), static_cast<Eigen::Index>(c)) =
-          number_in(cells[c], path, lines[i].number);
+          number_or_nan(cells[c], path, lines[i].number);
   }
   return table;
 }
@@ -110,9 +116,12 @@ NumberTable read_table(const std::string& path, const std::string& dataset) {
   else
     throw std::runtime_error(path + ": a track is read from .csv, .npy, .h5 and .hdf5 files");
   if (table.values.size() == 0) throw std::runtime_error(path + ": holds no numbers");
-  for (Eigen::Index t = 0; t < table.values.rows(); ++t)
-    if (!table.values.row(t).allFinite())
-      throw std::runtime_error(fmt::format("{}: frame {} holds a number that is not finite", path, t));
+  for (Eigen::Index t = 0; t < table.values.rows(); ++t) {
+    if (table.values.row(t).allFinite()) continue;
+    const auto what = fmt::format("frame {} holds a number that is not finite", t);
+    if (table.lines.empty()) throw std::runtime_error(path + ": " + what);
+    complain(path, table.lines[static_cast<std::size_t>(t)], what);
+  }
   return table;
 }
 

@@ -13,7 +13,8 @@ struct NumberTable {
   std::vector<int> lines;  ///< of a CSV, that each row stands in
 };
 
-/// Comma-separated numbers; a first line that is not numbers names the columns.
+/// Comma-separated numbers, "nan" among them; a first line without a number names the columns. Throws
+/// std::runtime_error naming the file and the line.
 NumberTable read_csv(const std::string& path);
 
 /// NumPy .npy of float32 or float64, C order, two dimensions (one: a column).

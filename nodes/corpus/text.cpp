@@ -94,16 +94,19 @@ void complain(const std::string& file, int line, const std::string& what) {
   throw std::runtime_error(fmt::format("{}:{}: {}", file, line, what));
 }
 
-double number_in(const std::string& text, const std::string& file, int line) {
+std::optional<double> number_of(std::string_view text) {
   const auto from = text.find_first_not_of(" \t");
-  const auto to = text.find_last_not_of(" \t");
-  const std::string_view trimmed =
-      from == std::string::npos ? std::string_view() : std::string_view(text).substr(from, to - from + 1);
+  if (from == std::string_view::npos) return {};
+  text = text.substr(from, text.find_last_not_of(" \t") + 1 - from);
   double value = 0;
-  const auto [end, error] = std::from_chars(trimmed.data(), trimmed.data() + trimmed.size(), value);
-  if (error != std::errc() || end != trimmed.data() + trimmed.size() || trimmed.empty() || !std::isfinite(value))
-    complain(file, line, fmt::format("a number is expected, got \"{}\"", text));
-  return value;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+double number_in(const std::string& text, const std::string& file, int line) {
+  const auto value = number_of(text);
+  if (!value || !std::isfinite(*value)) complain(file, line, fmt::format("a number is expected, got \"{}\"", text));
+  return *value;
 }
 
 }  // namespace talkgraph

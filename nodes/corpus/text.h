@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,8 @@ std::string lower_case(std::string text);
 
 /// Throws std::runtime_error "file:line: what".
 [[noreturn]] void complain(const std::string& file, int line, const std::string& what);
+/// The number that a text is, blanks around it left out; "nan" and "inf" are numbers too.
+std::optional<double> number_of(std::string_view text);
 /// A finite number, or a complaint.
 double number_in(const std::string& text, const std::string& file, int line);
 

@@ -28,13 +28,18 @@ TEST_F(TablesTest, CsvWithAndWithoutNames) {
   const auto named = read_table(write("a.csv", "x,y,z\n1,2,3\r\n\n4, 5,6.5\n"), "");
   EXPECT_THAT(named.names, ElementsAre("x", "y", "z"));
   EXPECT_EQ(named.values, kValues);
+  EXPECT_THAT(read_csv(write("e.csv", "e,E\n1,2\n")).names, ElementsAre("e", "E"));
+  EXPECT_TRUE(std::isnan(read_csv(write("n.csv", "nan,nan\n1,2\n")).values(0, 1))) << "no header";
   EXPECT_EQ(read_table(write("b.csv", "1,2,3\n4,5,65e-1\n"), "").values, kValues);
 }
 
 TEST_F(TablesTest, CsvErrorsNameTheLine) {
   EXPECT_THAT(error_of([&] { read_csv(write("a.csv", "x,y\n1,2\n1\n")); }), HasSubstr("a.csv:3: 2 columns"));
   EXPECT_THAT(error_of([&] { read_csv(write("b.csv", "x,y\n1,2\n1,u\n")); }), HasSubstr("b.csv:3: a number"));
-  EXPECT_THAT(error_of([&] { read_csv(write("c.csv", "1,2\n1,nan\n")); }), HasSubstr("c.csv:2: a number"));
+  EXPECT_THAT(error_of([&] { read_csv(write("c.csv", "1,2\n1,inf\n")); }), HasSubstr("c.csv:2: a number"));
+  EXPECT_THAT(error_of([&] { read_table(write("f.csv", "nan,nan\n1,2\n"), ""); }),
+              HasSubstr("f.csv:1: frame 0 holds a number that is not finite"));
+  EXPECT_THAT(error_of([&] { read_csv(write("g.csv", "1,u\n1,2\n")); }), HasSubstr("g.csv:1: a number is expected"));
   EXPECT_THAT(error_of([&] { read_csv(write("d.csv", "x,y\n")); }), HasSubstr("d.csv: holds no numbers"));
   EXPECT_THAT(error_of([&] { read_csv(write("e.csv", "")); }), HasSubstr("e.csv: holds no numbers"));
   EXPECT_THAT(error_of([&] { read_csv(path("none.csv")); }), HasSubstr("none.csv: is missing"));
