@@ -11,17 +11,22 @@
 
 namespace talkgraph::cli {
 
-/// What corpus.inspect found in one clip.
+/// What is known of one clip.
 struct ClipFindings {
   std::string id, split;
-  Scores findings, phones;
+  Scores findings, phones;               ///< of corpus.inspect
+  std::vector<std::string> faults = {};  ///< what of it cannot be read, and why
+  bool annotated = false;                ///< its landmarks are of some frames, as the manifest says
 };
 
 /// All clips together:
 ///   clips     id, split, findings of each, and "problems", texts
+///   annotated ids of clips whose landmarks are of some frames
+///   unread    ids of clips that cannot be read, or not all of them
 ///   splits, sound_seconds, picture_seconds, fps, sound_rate (how many clips have which)
 ///   lacking   for transcript, words, phones, landmarks: the clips without
-///   offset    frames and milliseconds that the mouth is late, the mean correlation there, clips it was measured on
+///   offset    frames and milliseconds that the mouth is late, the mean correlation there, clips it was measured on;
+///             null unless the correlation is higher than chance makes it
 ///   phones    how often each occurs; missing_phones
 Json corpus_report(const std::vector<ClipFindings>& clips);
 
@@ -37,7 +42,9 @@ struct CorpusCommand {
   std::string rate;
 };
 
-/// `talkgraph corpus check`: looks a corpus over and writes what it is to standard output.
+/// `talkgraph corpus check`: looks a corpus over and writes what it is to standard output. Fails if a clip cannot be
+/// read as a whole, or there is none. Throws std::invalid_argument if the source is neither a manifest nor GRID's
+/// folder, std::runtime_error with all that is wrong with the manifest.
 int check_corpus(const CorpusCommand& command, RunCommand run, const Registry& registry);
 
 /// `talkgraph corpus new`: writes a manifest of a folder. Throws std::invalid_argument if it is there already.

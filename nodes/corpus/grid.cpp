@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "nodes/corpus/faults.h"
 #include "nodes/corpus/labels.h"
 #include "nodes/corpus/landmarks.h"
 #include "nodes/corpus/text.h"
@@ -78,9 +79,13 @@ Recording read_clip(const fs::path& folder, const Clip& clip, bool with_landmark
   recording.audio = [path = files.video.string()] { return read_audio(path); };
   recording.video = [path = files.video.string()] { return open_video(path); };
   recording.key = [path = files.video] { return file_key(path); };
-  recording.words = read_words(files.align.string());
-  recording.transcript = transcript_of(*recording.words);
-  if (with_landmarks) recording.landmarks = read_landmarks({files.landmarks.string(), "ibug68"}, Rational(25));
+  attempt(recording, [&] {
+    recording.words = read_words(files.align.string());
+    recording.transcript = transcript_of(*recording.words);
+  });
+  attempt(recording, [&] {
+    if (with_landmarks) recording.landmarks = read_landmarks({files.landmarks.string(), "ibug68"}, Rational(25));
+  });
   return recording;
 }
 
@@ -94,13 +99,15 @@ Stream<Recording> Grid::operator()() const {
   auto clips = read_splits(root / "split.json", limit, diagnostics);
   if (!diagnostics.ok()) throw std::runtime_error(diagnostics.str());
   const bool with_landmarks = fs::is_directory(root / "landmarks");
-  check_files(root, clips, with_landmarks);
+  if (!lenient) check_files(root, clips, with_landmarks);
   const std::size_t count = clips.size();
   return Stream<Recording>(
-      [root, clips = std::move(clips), with_landmarks, i = std::size_t{0}]() mutable -> std::optional<Item<Recording>> {
+      [root, clips = std::move(clips), with_landmarks, lenient = lenient,
+       i = std::size_t{0}]() mutable -> std::optional<Item<Recording>> {
         if (i == clips.size()) return {};
-        const Clip& clip = clips[i++];
-        return Item<Recording>{clip.id, read_clip(root, clip, with_landmarks)};
+        auto recording = read_clip(root, clips[i++], with_landmarks);
+        if (!lenient) refuse_faults(recording);
+        return Item<Recording>{recording.id, std::move(recording)};
       },
       count);
 }
@@ -110,6 +117,7 @@ void describe(Description<Grid>& d) {
   d.output("recording", "one item a clip");
   d.param("folder", &Grid::folder).required().doc("holds split.json, video/, align/ and landmarks/");
   d.param("limit", &Grid::limit).at_least(0).doc("clips of each split, 0 for all");
+  d.param("lenient", &Grid::lenient).doc(lenient_doc);
 }
 
 }  // namespace talkgraph

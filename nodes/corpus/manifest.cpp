@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "nodes/corpus/faults.h"
 #include "nodes/corpus/labels.h"
 #include "nodes/corpus/tables.h"
 #include "nodes/corpus/text.h"
@@ -27,43 +28,43 @@ std::optional<Transcript> transcript(const ManifestClip& clip, const std::option
   return {};
 }
 
-/// Reads a clip's labels; what is wrong with them is added to `complaints`.
-Recording with_labels(const ManifestClip& clip, std::string& complaints) {
+Recording with_labels(const ManifestClip& clip) {
   Recording recording;
-  const auto attempt = [&](const auto& read) {
-    try {
-      read();
-    } catch (const std::runtime_error& e) {
-      complaints += fmt::format("{}clip \"{}\": {}", complaints.empty() ? "" : "\n", clip.id, e.what());
-    }
-  };
-  attempt([&] {
+  recording.id = clip.id;
+  recording.split = clip.split;
+  attempt(recording, [&] {
     if (!clip.phones.empty()) recording.phones = read_phones(clip.phones);
   });
-  attempt([&] {
+  attempt(recording, [&] {
     if (!clip.words.empty()) recording.words = read_words(clip.words);
-    recording.transcript = transcript(clip, recording.words);
   });
+  attempt(recording, [&] { recording.transcript = transcript(clip, recording.words); });
   return recording;
 }
 
 /// Adds sound, pictures and tracks, which are too large to be read before they are asked for.
-Recording with_media(const ManifestClip& clip, Recording recording) try {
-  recording.id = clip.id;
-  recording.split = clip.split;
+void add_media(const ManifestClip& clip, Recording& recording) {
   recording.audio = [path = clip.audio.empty() ? clip.video : clip.audio] { return read_audio(path); };
   if (!clip.video.empty()) recording.video = [clip] { return open_pictures(clip); };
   recording.key = [clip] {
     return KeyMaker().add(file_key(clip.audio)).add(file_key(clip.video)).add(clip.rate ? clip.rate->str() : "").key();
   };
-  if (!clip.visual.empty()) recording.visual = read_visual(clip);
-  if (!clip.landmarks.path.empty()) {
+  attempt(recording, [&] {
+    if (!clip.visual.empty()) recording.visual = read_visual(clip);
+  });
+  attempt(recording, [&] {
+    if (clip.landmarks.path.empty()) return;
     const Rational rate = clip.rate ? *clip.rate : recording.video().source->rate();
     recording.landmarks = read_landmarks(clip.landmarks, rate, recording.video);
-  }
-  return recording;
-} catch (const std::runtime_error& e) {
-  throw std::runtime_error(fmt::format("clip \"{}\": {}", clip.id, e.what()));
+  });
+}
+
+/// Throws what is wrong with the labels of all.
+void refuse_faults(const std::vector<Recording>& recordings) {
+  std::string complaints;
+  for (const auto& recording : recordings)
+    if (const auto text = faults_text(recording); !text.empty()) complaints += (complaints.empty() ? "" : "\n") + text;
+  if (!complaints.empty()) throw std::runtime_error(complaints);
 }
 
 }  // namespace
@@ -77,16 +78,17 @@ Stream<Recording> Manifest::operator()() const {
   auto clips = read_manifest(file.path, diagnostics);
   if (!diagnostics.ok()) throw std::runtime_error(diagnostics.str());
   std::vector<Recording> recordings;
-  std::string complaints;
-  for (const auto& clip : clips) recordings.push_back(with_labels(clip, complaints));
-  if (!complaints.empty()) throw std::runtime_error(complaints);
+  for (const auto& clip : clips) recordings.push_back(with_labels(clip));
+  if (!lenient) refuse_faults(recordings);
   const std::size_t count = clips.size();
   return Stream<Recording>(
-      [clips = std::move(clips), recordings = std::move(recordings),
+      [clips = std::move(clips), recordings = std::move(recordings), lenient = lenient,
        i = std::size_t{0}]() mutable -> std::optional<Item<Recording>> {
         if (i == clips.size()) return {};
         const std::size_t n = i++;
-        return Item<Recording>{clips[n].id, with_media(clips[n], recordings[n])};
+        add_media(clips[n], recordings[n]);
+        if (!lenient) refuse_faults(recordings[n]);
+        return Item<Recording>{clips[n].id, std::move(recordings[n])};
       },
       count);
 }
@@ -95,6 +97,7 @@ void describe(Description<Manifest>& d) {
   d.type("corpus.manifest").summary("any recordings, as a JSON file describes them");
   d.output("recording", "one item a clip");
   d.param("file", &Manifest::file).required().doc("the manifest; docs/manifest.md says what stands in it");
+  d.param("lenient", &Manifest::lenient).doc(lenient_doc);
 }
 
 }  // namespace talkgraph

@@ -13,9 +13,10 @@ Video open_pictures(const ManifestClip& clip);
 /// taken from its own folder. Throws std::runtime_error: all that is wrong with the
 /// manifest, and all files that it names and that are missing, in one go with
 /// file:line:column when it starts; a malformed label, landmark or track file, with its
-/// line, when its clip's turn comes.
+/// line, when its clip's turn comes. `lenient` leaves such a file out instead, and tells of it in Recording::faults.
 struct Manifest {
   FilePath file;
+  bool lenient = false;
 
   Stream<Recording> operator()() const;
 };

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "nodes/types/audio.h"
 #include "nodes/types/phones.h"
@@ -26,6 +27,7 @@ struct Recording {
   std::optional<WordTrack> words;
   std::optional<PhoneTrack> phones;
   std::optional<LandmarkTrack> landmarks;
+  std::vector<std::string> faults;  ///< what of it cannot be read and why, where a corpus is lenient
 };
 template <>
 inline constexpr PortType port_type<Recording>{"Recording", 2};
