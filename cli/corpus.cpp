@@ -419,7 +419,11 @@ int new_corpus(const CorpusCommand& command) {
   if (fs::absolute(file).lexically_normal().parent_path() != fs::absolute(folder / "").lexically_normal().parent_path())
     throw std::invalid_argument(file.string() + ": a manifest lies in the folder of its clips");
   NewManifest make{command.validation, command.test, {}};
-  if (!command.rate.empty()) make.rate = Rational::parse(command.rate);
+  if (!command.rate.empty()) {
+    make.rate = Rational::parse(command.rate);
+    if (make.rate->num() <= 0)
+      throw std::invalid_argument("--rate: frames per second must be above 0, got " + command.rate);
+  }
   const auto made = make(folder);
   write_file(file, made.manifest.dump(1) + "\n");
   for (const auto& note : made.notes) fmt::print(stderr, "{}\n", note);

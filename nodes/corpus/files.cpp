@@ -6,16 +6,11 @@
 #include <set>
 #include <stdexcept>
 
+#include "nodes/corpus/ids.h"
 #include "nodes/media/audio_file.h"
 
 namespace talkgraph {
 namespace {
-
-std::string unique_id(const std::string& stem, std::set<std::string>& taken) {
-  std::string id = stem;
-  for (int n = 2; !taken.insert(id).second; ++n) id = fmt::format("{}-{}", stem, n);
-  return id;
-}
 
 void check_files(const std::vector<FilePath>& files) {
   std::string complaints;

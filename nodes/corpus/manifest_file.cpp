@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "nodes/corpus/ids.h"
 #include "nodes/corpus/text.h"
 #include "nodes/types/scheme.h"
 
@@ -129,17 +130,15 @@ void read_landmarks(const Members& clip, const fs::path& folder, LandmarkFiles& 
 /// A transcript that ends in .txt names a file, any other is the text itself.
 void read_transcript(const Members& clip, ManifestClip& out) {
   clip.text("transcript", out.transcript);
-  if (!out.transcript.ends_with(".txt")) return;
+  if (!lower_case(out.transcript).ends_with(".txt")) return;
   out.transcript.clear();
   clip.path("transcript", out.transcript_file, {}, false);
 }
 
-/// Ids name files.
 void check_id(const Members& clip, const std::string& id) {
   if (id.empty()) return clip.error("a clip needs an \"id\"");
-  const bool plain = std::none_of(id.begin(), id.end(), [](unsigned char c) { return c < ' ' || c == '/'; });
-  if (!plain || id.size() > 100 || id[0] == '.')
-    clip.error("an \"id\" names files: at most 100 bytes, without '/' and line ends, not beginning with '.'");
+  if (!is_id(id))
+    clip.error("an \"id\" names files: at most 100 bytes, without '/' and control characters, not beginning with '.'");
 }
 
 ManifestClip read_clip(const LocatedJson& json, const fs::path& folder, const std::optional<Rational>& rate,

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 
+#include "nodes/corpus/ids.h"
 #include "nodes/corpus/labels.h"
 #include "nodes/corpus/text.h"
 #include "nodes/media/video_file.h"
@@ -28,9 +30,9 @@ bool has_ending(const fs::path& path, const char* const (&endings)[N]) {
   return std::find(std::begin(endings), std::end(endings), ending_of(path)) != std::end(endings);
 }
 
-bool holds_pictures(const fs::path& folder) {
-  return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(),
-                     [](const auto& entry) { return is_picture_name(entry.path().filename().string()); });
+/// Names of files in a manifest are JSON, which is UTF-8.
+bool is_utf8(const std::string& text) try { return Json(text).dump(), true; } catch (const Json::type_error&) {
+  return false;
 }
 
 bool is_landmark_table(const fs::path& file) {
@@ -53,7 +55,7 @@ std::string name_of(const fs::path& path, const fs::path& folder, bool is_folder
   return (is_folder ? below : below.parent_path() / below.stem()).generic_string();
 }
 
-void sort_in(const fs::path& path, const fs::path& folder, Groups& groups, std::vector<std::string>& notes) {
+void sort_in_file(const fs::path& path, const fs::path& folder, Groups& groups, std::vector<std::string>& notes) {
   auto& group = groups[name_of(path, folder, false)];
   const auto ending = ending_of(path);
   const auto take = [&](std::optional<fs::path>& place) {
@@ -74,30 +76,50 @@ void sort_in(const fs::path& path, const fs::path& folder, Groups& groups, std::
     group.labels.push_back(path);
 }
 
+bool holds_pictures(const fs::path& folder) {
+  std::error_code unreadable;
+  const fs::directory_iterator entries(folder, unreadable);
+  return std::any_of(begin(entries), end(entries),
+                     [](const auto& entry) { return is_picture_name(entry.path().filename().string()); });
+}
+
+/// All files and folders below a folder, but for hidden ones and what is told in the notes.
+void list(const fs::path& folder, std::vector<fs::path>& all, std::vector<std::string>& notes) {
+  std::error_code error;
+  const fs::directory_iterator entries(folder, error);
+  if (error) notes.push_back(fmt::format("{}: passed over, {}", folder.string(), error.message()));
+  for (const auto& entry : entries) {
+    const auto& path = entry.path();
+    const std::string name = path.filename().string();
+    if (name.starts_with('.')) continue;
+    if (!is_utf8(name)) {
+      notes.push_back(path.string() + ": passed over, its name is not UTF-8; rename it");
+      continue;
+    }
+    all.push_back(path);
+    if (entry.is_directory(error) && !entry.is_symlink(error)) list(path, all, notes);
+  }
+}
+
+void sort_in(const fs::path& path, const fs::path& folder, Groups& groups, std::vector<std::string>& notes) try {
+  constexpr std::string_view marks = "-landmarks";
+  if (fs::is_regular_file(path)) return sort_in_file(path, folder, groups, notes);
+  const auto name = name_of(path, folder, true);
+  if (name.ends_with(marks))
+    groups[name.substr(0, name.size() - marks.size())].landmarks = path;
+  else if (holds_pictures(path))
+    groups[name].pictures = path;
+} catch (const std::runtime_error& e) {
+  notes.push_back(fmt::format("{}: passed over; {}", path.string(), e.what()));
+}
+
 /// All that may belong to clips, in the order of names.
 Groups groups_in(const fs::path& folder, std::vector<std::string>& notes) {
   std::vector<fs::path> all;
-  for (auto it = fs::recursive_directory_iterator(folder); it != fs::recursive_directory_iterator(); ++it) {
-    if (it->path().filename().string().starts_with('.')) {
-      if (it->is_directory()) it.disable_recursion_pending();
-      continue;
-    }
-    all.push_back(it->path());
-  }
+  list(folder, all, notes);
   std::sort(all.begin(), all.end());
   Groups groups;
-  constexpr std::string_view marks = "-landmarks";
-  for (const auto& path : all) {
-    if (fs::is_regular_file(path)) {
-      sort_in(path, folder, groups, notes);
-    } else if (fs::is_directory(path)) {
-      const auto name = name_of(path, folder, true);
-      if (name.ends_with(marks))
-        groups[name.substr(0, name.size() - marks.size())].landmarks = path;
-      else if (holds_pictures(path))
-        groups[name].pictures = path;
-    }
-  }
+  for (const auto& path : all) sort_in(path, folder, groups, notes);
   return groups;
 }
 
@@ -112,19 +134,21 @@ bool are_phones(const std::vector<Interval>& labels) {
   return std::all_of(labels.begin(), labels.end(), is_known);
 }
 
+bool is_time(const std::string& word) { return word.find_first_not_of("0123456789.") == std::string::npos; }
+
 /// A .lab without times, as aligners take them, is a transcript.
 std::optional<std::string> plain_text(const fs::path& file) {
   if (ending_of(file) != ".lab") return {};
+  const auto lines = lines_of(read_text_file(file.string()));
   std::string all;
-  for (const auto& line : lines_of(read_text_file(file.string()))) {
-    const auto first = words_of(line.text);
-    if (!first.empty() && first[0].find_first_not_of("0123456789.") == std::string::npos && first.size() > 2) return {};
-    all += (all.empty() ? "" : " ") + line.text;
-  }
+  for (const auto& line : lines) all += (all.empty() ? "" : " ") + line.text;
+  const auto first = lines.empty() ? std::vector<std::string>{} : words_of(lines[0].text);
+  if (first.size() > 2 && is_time(first[0]) && is_time(first[1])) return {};
+  if (!is_utf8(all)) throw std::runtime_error("it is not UTF-8");
   return all;
 }
 
-void add_labels(const fs::path& file, const std::string& name, Json& clip, std::vector<std::string>& notes) {
+void add_labels(const fs::path& file, const std::string& name, Json& clip, std::vector<std::string>& notes) try {
   if (const auto text = plain_text(file)) {
     clip["transcript"] = *text;
     return;
@@ -137,17 +161,13 @@ void add_labels(const fs::path& file, const std::string& name, Json& clip, std::
     taken = true;
   }
   if (!taken) notes.push_back(fmt::format("{}: passed over, neither phones nor words with times", file.string()));
+} catch (const std::runtime_error& e) {
+  notes.push_back(fmt::format("{}: passed over; {}", file.string(), e.what()));
 }
 
-/// Ids name files, so without "/".
-std::string id_of(std::string name) {
-  std::replace(name.begin(), name.end(), '/', '-');
-  return name;
-}
-
-Json clip_of(const std::string& name, const Group& group, const fs::path& folder, std::vector<std::string>& notes) {
+Json clip_of(std::string id, const Group& group, const fs::path& folder, std::vector<std::string>& notes) {
   const auto relative = [&](const fs::path& path) { return path.lexically_relative(folder).generic_string(); };
-  Json clip = {{"id", id_of(name)}, {"video", relative(group.video ? *group.video : *group.pictures)}};
+  Json clip = {{"id", std::move(id)}, {"video", relative(group.video ? *group.video : *group.pictures)}};
   if (group.sound) clip["audio"] = relative(*group.sound);
   if (group.landmarks) clip["landmarks"] = relative(*group.landmarks);
   for (const auto& file : group.labels) add_labels(file, relative(file), clip, notes);
@@ -181,9 +201,10 @@ NewManifest::Out NewManifest::operator()(const fs::path& given) const {
                              (out.notes.empty() ? "" : "; " + out.notes.front()));
   std::sort(names.begin(), names.end(), natural_less);
   Json clips = Json::array();
+  std::set<std::string> ids;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    clips.push_back(clip_of(names[i], groups.at(names[i]), folder, out.notes));
+    clips.push_back(clip_of(unique_id(names[i], ids), groups.at(names[i]), folder, out.notes));
     if (names.size() < 10) continue;
     if (is_chosen(i, test, 0.5))
       clips.back()["split"] = "test";

@@ -22,8 +22,9 @@ struct NewManifest {
   /// A manifest (docs/manifest.md) of the videos, and folders of pictures with sound beside them, in a folder and its
   /// subfolders. What lies beside a clip under its name is taken along: sound (.wav, .flac, .ogg), landmarks (.csv, or
   /// a folder NAME-landmarks of .pts), transcript (.txt, or .lab without times), words and phones (.TextGrid, .lab,
-  /// .align; whether labels are phones tells which). File names are relative to `folder`. Throws std::runtime_error if
-  /// the folder is not there or holds no clip.
+  /// .align; whether labels are phones tells which). File names are relative to `folder`. Ids are the clips'
+  /// names, made fit and unique (nodes/corpus/ids.h). Throws std::runtime_error if the folder is not there or holds no
+  /// clip.
   Out operator()(const std::filesystem::path& folder) const;
 };
 

@@ -164,7 +164,7 @@ TEST(Corpus, IsListedAndLookedOver) {
   const auto checked = [&](int code) { return output_of([&] { return check_corpus(command, run, registry); }, code); };
   EXPECT_THAT(checked(failed), AllOf(HasSubstr("2 clips (2 train)"), HasSubstr("look at:\n  s002: "),
                                      HasSubstr("transcript   1 of 2 clips, not s002")));
-  folder.write("samples/clips/s001.lab", "0 1 aa\n0 2 b\n");
+  folder.write("samples/clips/s001.lab", "0 1000 aa\n1000 x b\n");
   folder.write("samples/clips/s001.csv", "x0,y1\n1,2\n");
   folder.write("samples/clips/bad.json", R"({"clips": [
     {"id": "s001", "video": "s001.mp4", "phones": "s001.lab", "landmarks": "s001.csv", "transcript": "hello"}]})");
@@ -207,6 +207,12 @@ TEST(Corpus, SaysWhatIsNotThere) {
   command.source = folder.file("clips");
   command.output = folder.file("manifest.json");
   EXPECT_THROW(new_corpus(command), std::invalid_argument) << "names of files count from the manifest's folder";
+  command.output.clear();
+  for (const char* rate : {"0", "-5", "fast"}) {
+    command.rate = rate;
+    EXPECT_THROW(new_corpus(command), std::invalid_argument) << rate;
+  }
+  EXPECT_FALSE(fs::exists(folder.path() / "clips/manifest.json"));
 }
 
 }  // namespace

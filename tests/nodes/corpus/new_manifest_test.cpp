@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "nodes/corpus/manifest_file.h"
 #include "tests/temporary_folder.h"
@@ -100,6 +101,60 @@ TEST_F(NewManifestTest, TakesFoldersOfPicturesWithSound) {
   EXPECT_EQ(manifest["clips"][0]["landmarks"], "a-landmarks");
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_THAT(notes[0], HasSubstr("b: passed over, a folder of pictures needs its sound beside it"));
+}
+
+TEST_F(NewManifestTest, MakesIdsThatTheLoaderTakes) {
+  const std::string wide = "\xc3\xa4", longest(110, 'a');
+  std::string umlauts;
+  for (int i = 0; i < 60; ++i) umlauts += wide;
+  for (const auto& name : {"a-b", "a/b", "a-b-2", "new\nline", "x/tab\there"})
+    folder.write(std::string(name) + ".mp4", "");
+  for (const auto& name : {longest + "1", longest + "2", umlauts}) folder.write(name + ".mp4", "");
+  std::vector<std::string> ids;
+  const auto clips = make()["clips"];
+  for (const auto& clip : clips) ids.push_back(clip["id"]);
+  EXPECT_THAT(ids,
+              testing::UnorderedElementsAre("a-b", "a-b-2", "a-b-3", "new-line", "x-tab-here", longest.substr(0, 90),
+                                            longest.substr(0, 90) + "-2", umlauts.substr(0, 90)));
+}
+
+TEST_F(NewManifestTest, PassesOverWhatCannotBeListed) {
+  folder.write("a.mp4", "");
+  folder.write("caf\xe9.mp4", "");
+  folder.write("caf\xe9/b.mp4", "");
+  folder.write("locked/c.mp4", "");
+  folder.write("latin.mp4", "");
+  folder.write("latin.lab", "gr\xfcn\n");
+  std::filesystem::create_symlink("loop", folder.path() / "loop");
+  const auto locked = folder.path() / "locked";
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  std::filesystem::permissions(locked, std::filesystem::perms::none);
+  const auto user = geteuid();
+  if (user == 0) {
+    ASSERT_EQ(seteuid(65534), 0) << "nothing is locked for root";
+  }
+  const auto clips = NewManifest{}(folder.path());
+  ASSERT_EQ(seteuid(user), 0);
+  std::filesystem::permissions(locked, std::filesystem::perms::owner_all);
+  ASSERT_EQ(clips.manifest["clips"].size(), 2u);
+  EXPECT_FALSE(clips.manifest["clips"][1].contains("transcript"));
+  EXPECT_THAT(clips.notes, testing::UnorderedElementsAre(
+                               HasSubstr("caf\xe9.mp4: passed over, its name is not UTF-8; rename it"),
+                               HasSubstr("caf\xe9: passed over"), HasSubstr("locked: passed over, Permission denied"),
+                               HasSubstr("latin.lab: passed over; it is not UTF-8"), HasSubstr("loop: passed over")));
+}
+
+TEST_F(NewManifestTest, ATranscriptMayBeginWithANumber) {
+  for (const char* name : {"a", "b", "c"}) folder.write(std::string(name) + ".mp4", "");
+  folder.write("a.lab", "10 green bottles\nhanging on the wall\n");
+  folder.write("b.lab", "2\n");
+  folder.write("c.TXT", "Good morning");
+  const auto clips = make()["clips"];
+  EXPECT_EQ(clips[0]["transcript"], "10 green bottles hanging on the wall");
+  EXPECT_EQ(clips[1]["transcript"], "2");
+  EXPECT_EQ(clips[2]["transcript"], "c.TXT");
+  Diagnostics diagnostics;
+  EXPECT_EQ(read_manifest(folder.file("manifest.json"), diagnostics)[2].transcript_file, folder.file("c.TXT"));
 }
 
 TEST_F(NewManifestTest, SaysWhatItPassesOver) {
