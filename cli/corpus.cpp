@@ -13,6 +13,7 @@
 #include "graph/output_file.h"
 #include "nodes/corpus/manifest_file.h"
 #include "nodes/corpus/new_manifest.h"
+#include "nodes/types/median.h"
 #include "nodes/types/recording.h"
 #include "nodes/types/visemes.h"
 
@@ -114,8 +115,7 @@ Usual usual_of(const std::vector<ClipFindings>& clips) {
     for (const auto& clip : clips)
       if (const double v = value(clip.findings, colour); !std::isnan(v)) all.push_back(v);
     if (all.empty()) continue;
-    std::nth_element(all.begin(), all.begin() + std::ssize(all) / 2, all.end());
-    out.colours[colour] = all[all.size() / 2];
+    out.colours[colour] = median(all);
   }
   out.offset = mean_lags(clips);
   return out;

@@ -118,8 +118,11 @@ void merge(LocatedJson& base, const LocatedJson& patch, const std::string& at, D
     } else if (there) {
       std::erase_if(base.members, [&](const auto& old) { return old.key == m.key; });
     } else if (m.value.is(Kind::null)) {
-      diagnostics.error(m.key_place, fmt::format("null takes \"{}\" away, but what is extended has none{}", name,
-                                                 did_you_mean(m.key, keys_of(base))));
+      diagnostics.error(
+          m.key_place,
+          fmt::format("null takes \"{}\" away, but what is extended has none{}{}", name,
+                      did_you_mean(m.key, keys_of(base)),
+                      at.ends_with(".params") ? "; \"${name}\" of a parameter whose default is null gives null" : ""));
     } else {
       base.members.push_back(m);
     }

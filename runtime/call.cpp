@@ -336,6 +336,7 @@ void Caller::claim(const Station& station, const std::filesystem::path& file) {
   if (!first)
     throw std::runtime_error(
         fmt::format("{} is written by {} already: each needs a folder or name of its own", file.string(), at->second));
+  for (auto* o : options_.observers) o->writes(file.string());
 }
 
 std::vector<std::string> Caller::files() const {

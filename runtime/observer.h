@@ -77,6 +77,8 @@ class RunObserver {
   virtual void progress(int /*node*/, const std::string& /*item*/, double /*share*/) {}
   virtual void log(int /*node*/, const std::string& /*item*/, std::string_view /*message*/) {}
   virtual void warn(int /*node*/, const std::string& /*item*/, std::string_view /*message*/) {}
+  /// A node is about to put a file, named from there, in the run folder.
+  virtual void writes(const std::string& /*file*/) {}
   /// Of the run as a whole.
   virtual void notice(std::string_view /*message*/) {}
   /// An item failed and the run keeps going; what stops a run is told by ended().

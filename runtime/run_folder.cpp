@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <vector>
 
 #include "graph/output_file.h"
 #include "runtime/memory.h"
@@ -28,19 +29,34 @@ fs::path unused_folder(const Graph& graph, std::chrono::system_clock::time_point
   return path;
 }
 
-/// Removes what an earlier run wrote, as its run.json lists it, and the folders that are empty then.
+/// The files that a run writes, a JSON text a line, until its run.json lists them: a run that is killed leaves it.
+constexpr auto journal = ".written";
+
+/// What an earlier run wrote, as its run.json lists it, or its journal if it was killed.
+std::vector<std::string> written_earlier(const fs::path& folder) {
+  std::vector<std::string> files;
+  const auto take = [&](const Json& name) {
+    if (name.is_string()) files.push_back(name);
+  };
+  std::ifstream report(folder / "run.json"), lines(folder / journal);
+  const Json run = Json::parse(report, nullptr, false);
+  if (run.is_object())
+    for (const auto& name : run.value("files", Json::array())) take(name);
+  for (std::string line; std::getline(lines, line);) take(Json::parse(line, nullptr, false));
+  return files;
+}
+
+/// Removes what an earlier run wrote, and the folders that are empty then.
 void clear_earlier_run(const fs::path& folder) {
-  std::ifstream in(folder / "run.json");
-  const Json report = Json::parse(in, nullptr, false);
-  if (!report.is_object()) return;
-  for (const auto& name : report.value("files", Json::array())) {
-    const fs::path file = fs::path(name.get<std::string>()).lexically_normal();
+  for (const auto& name : written_earlier(folder)) {
+    const fs::path file = fs::path(name).lexically_normal();
     if (file.empty() || file.is_absolute() || *file.begin() == "..") continue;
     std::error_code left;
     fs::remove(folder / file, left);
     for (auto parent = file.parent_path(); !parent.empty() && !left; parent = parent.parent_path())
       fs::remove(folder / parent, left);
   }
+  fs::remove(folder / journal);
 }
 
 }  // namespace
@@ -54,7 +70,8 @@ RunFolder::RunFolder(const Graph& graph, fs::path path)
     write_file(path_ / "graph.resolved.json", graph.resolved.dump(2) + "\n");
     write_file(path_ / "run.json", header("running").dump(2) + "\n");
     log_.open(path_ / "log.txt", std::ios::app);
-    if (!log_) throw std::runtime_error(fmt::format("{} cannot be written", (path_ / "log.txt").string()));
+    written_.open(path_ / journal);
+    if (!log_ || !written_) throw std::runtime_error(fmt::format("{} cannot be written", path_.string()));
   } catch (const std::exception& e) {
     throw std::runtime_error(
         fmt::format("the run folder {} cannot be used: {}; choose another one", path_.string(), e.what()));
@@ -79,6 +96,11 @@ void RunFolder::warn(int node, const std::string& item, std::string_view message
 
 void RunFolder::notice(std::string_view message) { log(fmt::format("warning: {}", message)); }
 
+void RunFolder::writes(const std::string& file) {
+  const std::lock_guard lock(mutex_);
+  written_ << Json(file).dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl;
+}
+
 void RunFolder::failed(const Failure& failure) { log(failure.str()); }
 
 Json RunFolder::header(const std::string& status) const {
@@ -96,6 +118,8 @@ void RunFolder::ended(const RunReport& report) {
   json.update(to_json(graph_, report));
   json["files"] = report.files;
   write_file(path_ / "run.json", json.dump(2) + "\n");
+  written_.close();
+  fs::remove(path_ / journal);
   const std::string status = json["status"];
   log(report.error.empty() ? status : status + ": " + report.error);
 }

@@ -16,6 +16,7 @@ namespace talkgraph {
 ///   log.txt              what nodes said and what failed, with UTC times
 ///   run.json             status (running, finished, finished with failures, failed, cancelled), started and ended,
 ///                        seconds, peak memory, calls and times of each node, failures, the files that the run wrote
+///   .written             while it runs: the files that it writes
 /// and what sinks write. Give it to the run as an observer.
 class RunFolder final : public RunObserver {
  public:
@@ -30,6 +31,7 @@ class RunFolder final : public RunObserver {
   void started(const Graph&) override;
   void log(int node, const std::string& item, std::string_view message) override;
   void warn(int node, const std::string& item, std::string_view message) override;
+  void writes(const std::string& file) override;
   void notice(std::string_view message) override;
   void failed(const Failure&) override;
   void ended(const RunReport&) override;
@@ -42,7 +44,7 @@ class RunFolder final : public RunObserver {
   Clock::time_point started_ = Clock::now();
   std::filesystem::path path_;  // names itself after started_
   std::mutex mutex_;
-  std::ofstream log_;
+  std::ofstream log_, written_;
 };
 
 }  // namespace talkgraph

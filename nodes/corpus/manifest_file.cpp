@@ -102,7 +102,7 @@ void read_visual(const Members& clip, ManifestClip& out) {
 }
 
 /// The name of a built-in scheme, or the text of the scheme file named.
-void read_scheme(const Members& landmarks, const fs::path& folder, std::string& scheme, Diagnostics& diagnostics) {
+void read_scheme(const Members& landmarks, const fs::path& folder, std::string& scheme, Diagnostics& diagnostics) try {
   landmarks.text("scheme", scheme);
   if (scheme.empty()) return;
   if (scheme.ends_with(".json")) {
@@ -112,6 +112,8 @@ void read_scheme(const Members& landmarks, const fs::path& folder, std::string& 
   } else if (!find_scheme(scheme)) {
     diagnostics.error(landmarks.at("scheme").place, unknown_scheme(scheme));
   }
+} catch (const std::runtime_error& e) {  // of a scheme as a text
+  diagnostics.error(landmarks.at("scheme").place, e.what());
 }
 
 void read_landmarks(const Members& clip, const fs::path& folder, LandmarkFiles& out, Diagnostics& diagnostics) {

@@ -134,16 +134,23 @@ bool are_phones(const std::vector<Interval>& labels) {
   return std::all_of(labels.begin(), labels.end(), is_known);
 }
 
-bool is_time(const std::string& word) { return word.find_first_not_of("0123456789.") == std::string::npos; }
+/// "start end label".
+bool has_times(const std::string& line) {
+  const auto is_time = [](const std::string& word) {
+    return word.find_first_not_of("0123456789.") == std::string::npos;
+  };
+  const auto words = words_of(line);
+  return words.size() > 2 && is_time(words[0]) && is_time(words[1]);
+}
 
 /// A .lab without times, as aligners take them, is a transcript.
 std::optional<std::string> plain_text(const fs::path& file) {
   if (ending_of(file) != ".lab") return {};
-  const auto lines = lines_of(read_text_file(file.string()));
   std::string all;
-  for (const auto& line : lines) all += (all.empty() ? "" : " ") + line.text;
-  const auto first = lines.empty() ? std::vector<std::string>{} : words_of(lines[0].text);
-  if (first.size() > 2 && is_time(first[0]) && is_time(first[1])) return {};
+  for (const auto& line : lines_of(read_text_file(file.string()))) {
+    if (has_times(line.text)) return {};
+    all += (all.empty() ? "" : " ") + line.text;
+  }
   if (!is_utf8(all)) throw std::runtime_error("it is not UTF-8");
   return all;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "nodes/types/median.h"
 #include "nodes/types/visemes.h"
 
 namespace talkgraph {
@@ -79,16 +80,8 @@ Agreement compare(const PhoneTrack& true_track, const PhoneTrack& found_track) {
   return agreement;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return NAN;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2) return *middle;
-  return (*middle + *std::max_element(values.begin(), middle)) / 2;
-}
-
 std::vector<double> cells(const Agreement& agreement) {
-  std::vector<double> sizes;
+  std::vector<double> errors = agreement.errors, sizes;
   for (const double error : agreement.errors) sizes.push_back(std::abs(error));
   const auto within = [&](double ms) {
     const auto count = std::count_if(sizes.begin(), sizes.end(), [&](double size) { return size <= ms; });
@@ -96,7 +89,7 @@ std::vector<double> cells(const Agreement& agreement) {
   };
   const auto phones = static_cast<double>(agreement.phones);
   return {phones,        agreement.phones ? static_cast<double>(agreement.different) / phones : NAN,
-          median(sizes), median(agreement.errors),
+          median(sizes), median(errors),
           within(10),    within(20),
           within(50)};
 }

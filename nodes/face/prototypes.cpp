@@ -132,7 +132,8 @@ Prototypes ChoosePrototypes::operator()(const Collected<Video>& videos, const Co
   if (chosen.empty() && landmarks.empty())
     throw std::runtime_error(
         "no frame can serve as a prototype: none of the " + std::to_string(videos.size()) +
-        " clips to train on has landmarks; a face model is built from some, give them in the corpus");
+        " clips to train on has landmarks; mark the face in some frames with talkgraph annotate MANIFEST, or name "
+        "landmarks in the manifest");
   if (chosen.empty())
     throw std::runtime_error(
         "no frame can serve as a prototype: of " + std::to_string(videos.size()) +

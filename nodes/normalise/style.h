@@ -22,8 +22,8 @@ inline constexpr EnumNames<StyleSign, 3> enum_names<StyleSign>{
 ///   speed     root mean square step from frame to frame, in deviations
 ///   pose      share that the head's place, size and angle in the picture explain likewise; NaN without face tracks
 ///   style     0 to 1 by `by`: 1 − sound / the largest sound, 1 − speed / the largest, or pose / the largest
-/// Tracks are matched by key. Throws std::runtime_error where evaluate.explained does, and if `by` is pose and no face
-/// tracks are given.
+/// Tracks are matched by key. Throws std::runtime_error where evaluate.explained does, if `by` is pose and no face
+/// tracks are given, and if `by` is sound and the sound explains less than 0.05 of every component.
 struct RankStyle {
   StyleSign by = StyleSign::sound;
   int context = 3;
@@ -37,7 +37,8 @@ void describe(Description<RankStyle>& d);
 /// A u (thesis §3.4.1). Style are the components named in `style` (from 1),
 /// and, if a ranking is given and none is named, those whose "style" there is
 /// at least `above`. Throws std::runtime_error on numbers that no component
-/// has, a ranking of other components, and values that are not finite.
+/// has, a ranking of other components, values that are not finite, and if all
+/// components are style.
 struct RemoveStyle {
   std::vector<int> style;
   double above = 0.9;

@@ -70,15 +70,15 @@ std::string url(const std::string& path) {
   return out;
 }
 
-bool is_picture(const std::string& path) {
-  return path.ends_with(".png") || path.ends_with(".jpg") || path.ends_with(".svg");
-}
-
 bool is_video(const std::string& path) {
   return path.ends_with(".mp4") || path.ends_with(".webm") || path.ends_with(".mkv");
 }
 
 }  // namespace
+
+bool is_picture(const std::string& path) {
+  return path.ends_with(".png") || path.ends_with(".jpg") || path.ends_with(".svg");
+}
 
 std::string html_open(const std::string& title, const std::string& notes) {
   std::string page = fmt::format(

@@ -15,6 +15,8 @@ std::string html_close();
 /// A table with its title as caption; a column and its "NAME std" share cells, "0.59 ± 0.08".
 std::string html_table(const std::string& name, const Table& table);
 std::string html_plot(const Plot& plot);
+/// Whether a browser shows the file as a picture, by its ending.
+bool is_picture(const std::string& path);
 /// A player or a picture of a file beside the page, a link to one of another kind.
 std::string html_clip(const std::string& name, const Artifact& clip);
 

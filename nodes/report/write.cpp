@@ -1,10 +1,21 @@
 #include "nodes/report/write.h"
 
+#include <fmt/format.h>
+
 #include "graph/output_file.h"
 #include "nodes/report/page.h"
 #include "nodes/write/text.h"
 
 namespace talkgraph {
+namespace {
+
+const char* heading(const Collected<Artifact>& clips) {
+  std::size_t pictures = 0;
+  for (std::size_t i = 0; i < clips.size(); ++i) pictures += is_picture(clips[i].path);
+  return pictures == 0 ? "Clips" : pictures == clips.size() ? "Pictures" : "Clips and pictures";
+}
+
+}  // namespace
 
 Artifact WriteReport::operator()(const Collected<Table>& tables, const Collected<Plot>& plots,
                                  const Collected<Artifact>& clips, Context& context) const {
@@ -20,7 +31,7 @@ Artifact WriteReport::operator()(const Collected<Table>& tables, const Collected
     page += html_plot(plots[i]);
     write_file(context.file("plots/" + plots.key(i) + ".svg"), plots[i].svg);
   }
-  if (!clips.empty()) page += "<h2>Clips</h2>\n<div class=\"clips\">\n";
+  if (!clips.empty()) page += fmt::format("<h2>{}</h2>\n<div class=\"clips\">\n", heading(clips));
   for (std::size_t i = 0; i < clips.size(); ++i) page += html_clip(clips.key(i), clips[i]);
   if (!clips.empty()) page += "</div>\n";
   write_file(context.file("metrics.json"), metrics.dump(2) + "\n");
@@ -29,10 +40,10 @@ Artifact WriteReport::operator()(const Collected<Table>& tables, const Collected
 }
 
 void describe(Description<WriteReport>& d) {
-  d.type("report.write").version(2).summary("writes the report page, the plots and metrics.json").sink();
+  d.type("report.write").version(3).summary("writes the report page, the plots and metrics.json").sink();
   d.input("tables", "an object of named tables")
       .input("plots", "an object of named plots")
-      .input("clips", "a stream of clips");
+      .input("clips", "a stream of clips, or pictures");
   d.output("file", "report.html");
   d.param("title", &WriteReport::title).doc("heading of the page");
   d.param("notes", &WriteReport::notes).doc("a paragraph under the heading");

@@ -165,20 +165,20 @@ Recording record(const BuiltinSpeaker& node, const std::shared_ptr<const face::P
   return r;
 }
 
-void check(const BuiltinSpeaker& node) {
-  const auto refuse = [](const std::string& why) { throw std::invalid_argument("speaker.builtin: " + why); };
-  if (node.sentences > static_cast<std::int64_t>(speaker_sentence_count()))
-    refuse(fmt::format("the speaker knows {} sentences, not {}", speaker_sentence_count(), node.sentences));
-  if (node.held_out + node.validation >= node.sentences)
-    refuse(fmt::format("{} held out and {} for validation leave none of {} sentences to train on", node.held_out,
-                       node.validation, node.sentences));
-  if (node.height % 2 != 0) refuse(fmt::format("height must be even, got {}", node.height));
-}
-
 }  // namespace
 
+std::string complaint(const BuiltinSpeaker& node) {
+  if (node.sentences > static_cast<std::int64_t>(speaker_sentence_count()))
+    return fmt::format("the speaker knows {} sentences, not {}", speaker_sentence_count(), node.sentences);
+  if (node.held_out + node.validation >= node.sentences)
+    return fmt::format("{} held out and {} for validation leave none of {} sentences to train on", node.held_out,
+                       node.validation, node.sentences);
+  if (node.height % 2 != 0) return fmt::format("height must be even, got {}", node.height);
+  return {};
+}
+
 Stream<Recording> BuiltinSpeaker::operator()() const {
-  check(*this);
+  if (const auto why = complaint(*this); !why.empty()) throw std::invalid_argument("speaker.builtin: " + why);
   const auto portrait =
       std::make_shared<const face::Portrait>(static_cast<int>(height), static_cast<std::uint64_t>(seed));
   return Stream<Recording>(

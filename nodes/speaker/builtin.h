@@ -34,4 +34,7 @@ struct BuiltinSpeaker {
 };
 void describe(Description<BuiltinSpeaker>& d);
 
+/// What is wrong with parameters that are right one by one; empty if nothing is.
+std::string complaint(const BuiltinSpeaker& node);
+
 }  // namespace talkgraph

@@ -30,12 +30,7 @@ double kaiser(double x, double beta) {
 
 Track filter_to_video(const Track& track, const Audio* audio, const Rational& rate, Eigen::Index reach,
                       const std::function<Eigen::RowVectorXd(double phase)>& weights) {
-  check_finite(track);
-  Track out;
-  out.rate = rate;
-  out.start = video_time(0, rate);
-  out.names = track.names;
-  out.values.resize(video_frames(track, audio, rate), track.dimension());
+  Track out = unfilled(track, audio, rate);
   const Rational step = track.rate / rate;  // input frames in an output frame
   const double offset = step.value() / 2 - track.start * track.rate.value();
   const double last = static_cast<double>(out.frames() - 1) * step.value() + offset;

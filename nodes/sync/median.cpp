@@ -5,26 +5,12 @@
 #include <vector>
 
 #include "nodes/sync/video_frames.h"
+#include "nodes/types/median.h"
 
 namespace talkgraph {
-namespace {
-
-double median(std::vector<double>& v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  if (v.size() % 2) return *middle;
-  return (*middle + *std::max_element(v.begin(), middle)) / 2;
-}
-
-}  // namespace
 
 Track MedianSync::operator()(const Track& track, const Audio* audio) const {
-  check_finite(track);
-  Track out;
-  out.rate = rate;
-  out.start = video_time(0, rate);
-  out.names = track.names;
-  out.values.resize(video_frames(track, audio, rate), track.dimension());
+  Track out = unfilled(track, audio, rate);
   const double in_rate = track.rate.value();
   const auto last = static_cast<double>(track.frames() - 1);
   const auto position = [&](double seconds) { return (seconds - track.start) * in_rate; };

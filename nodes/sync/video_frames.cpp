@@ -34,4 +34,14 @@ void check_finite(const Track& track) {
     throw std::runtime_error("a track with NaN or infinite values: look at the stage before");
 }
 
+Track unfilled(const Track& track, const Audio* audio, const Rational& rate) {
+  check_finite(track);
+  Track out;
+  out.rate = rate;
+  out.start = video_time(0, rate);
+  out.names = track.names;
+  out.values.resize(video_frames(track, audio, rate), track.dimension());
+  return out;
+}
+
 }  // namespace talkgraph

@@ -17,6 +17,10 @@ Eigen::Index video_frames(const Audio& audio, const Rational& fps);
 /// Centre of video frame n, seconds: (n + ½) / fps.
 double video_time(Eigen::Index n, const Rational& fps);
 
+/// The track at the video rate, with a row a video frame that is still to be computed. Errors of video_frames and
+/// check_finite.
+Track unfilled(const Track& track, const Audio* audio, const Rational& rate);
+
 /// Throws std::runtime_error if a track is empty or holds NaN or infinity.
 void check_finite(const Track& track);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -65,8 +66,13 @@ class Reader {
     return name;
   }
 
-  double number(const LocatedJson& json) {
-    return expect(json, Kind::number, "a number is expected") ? json.scalar.get<double>() : 0;
+  double coordinate(const LocatedJson& json) {
+    constexpr double most = 1e6;
+    if (!expect(json, Kind::number, "a number is expected")) return 0;
+    const auto value = json.scalar.get<double>();
+    if (!(std::abs(value) <= most))
+      diagnostics_.error(json.place, fmt::format("a number from {:g} to {:g} is expected", -most, most));
+    return value;
   }
 
   /// A list of point numbers, each once.
@@ -100,12 +106,25 @@ class Reader {
       if (!item.is(Kind::array) || item.items.size() != 2)
         diagnostics_.error(item.place, what);
       else
-        scheme.mean.row(static_cast<Eigen::Index>(i)) << number(item.items[0]), number(item.items[1]);
+        scheme.mean.row(static_cast<Eigen::Index>(i)) << coordinate(item.items[0]), coordinate(item.items[1]);
     }
     if (scheme.points() < 3)
       diagnostics_.error(json.place, fmt::format("a face needs at least 3 points, got {}", scheme.points()));
-    else if (!((scheme.mean.colwise().maxCoeff() - scheme.mean.colwise().minCoeff()).minCoeff() > 0))
-      diagnostics_.error(json.place, "the points of \"mean\" lie on one line");
+    else
+      check_mean(json, scheme.mean);
+  }
+
+  /// Points must lie apart from each other and not on a line, by more than rounding.
+  void check_mean(const LocatedJson& json, const Shape& mean) {
+    constexpr double apart = 1e-6;  // of the face's size
+    const Eigen::MatrixXd centred = mean.rowwise() - mean.colwise().mean();
+    const Eigen::Vector2d size = centred.jacobiSvd().singularValues();
+    if (!(size(1) > apart * size(0))) return diagnostics_.error(json.place, "the points of \"mean\" lie on one line");
+    for (Eigen::Index i = 1; i < mean.rows(); ++i)
+      for (Eigen::Index j = 0; j < i; ++j)
+        if ((mean.row(i) - mean.row(j)).norm() <= apart * size(0))
+          diagnostics_.error(json.items[static_cast<std::size_t>(i)].place,
+                             fmt::format("point {} lies where point {} does", i, j));
   }
 
   void claim(const Place& place, const std::string& name) {
@@ -133,6 +152,7 @@ class Reader {
   void read_names(const LocatedJson& json, PointScheme& scheme) {
     if (!expect(json, Kind::object, "\"names\" is an object from names to points")) return;
     for (const auto& member : json.members) {
+      if (member.key.empty()) diagnostics_.error(member.key_place, "a name must not be empty");
       claim(member.key_place, member.key);
       scheme.names[member.key] = one_point(member.value, scheme);
     }
@@ -157,8 +177,11 @@ class Reader {
   void read_triangles(const LocatedJson& json, PointScheme& scheme) {
     if (!expect(json, Kind::array, "\"triangles\" is a list of [point, point, point]")) return;
     scheme.triangles.resize(std::ssize(json.items), 3);
+    std::set<std::set<int>> drawn;
     for (std::size_t i = 0; i < json.items.size(); ++i) {
       const auto corners = points(json.items[i], scheme, "a triangle is [point, point, point]");
+      if (!drawn.insert({corners.begin(), corners.end()}).second)
+        diagnostics_.error(json.items[i].place, "this triangle stands here twice");
       if (corners.size() == 3)
         scheme.triangles.row(static_cast<Eigen::Index>(i)) << corners[0], corners[1], corners[2];
       else

@@ -20,7 +20,7 @@ Artifact WriteHdf5::operator()(const Value& value, const Provenance& made, Conte
 }
 
 void describe(Description<WriteHdf5>& d) {
-  d.type("write.hdf5").summary("writes a value of any type as HDF5, for h5py, Octave and MATLAB").sink();
+  d.type("write.hdf5").summary("writes a value of any type as HDF5, for h5py and other readers").sink();
   d.input("value", "whatever is wired").output("file", "the HDF5 file");
   d.param("folder", &WriteHdf5::folder).doc("below the run folder");
 }

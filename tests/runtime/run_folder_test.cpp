@@ -106,6 +106,46 @@ TEST_F(RunFolderTest, ClearsWhatAnEarlierRunWroteAndNothingElse) {
     EXPECT_EQ(temporary_.read(kept), "mine") << kept;
 }
 
+TEST_F(RunFolderTest, ClearsWhatAKilledRunWrote) {
+  const auto written = temporary_.file("run/clips/a b\n.txt");
+  {
+    RunFolder killed(b_.graph, home_ / "run");
+    killed.writes("clips/a b\n.txt");
+    killed.writes("never.txt");
+    temporary_.write("run/clips/a b\n.txt", "half done");
+    temporary_.write("run/mine.txt", "mine");
+  }
+  RunFolder next(b_.graph, home_ / "run");
+  EXPECT_FALSE(fs::exists(written));
+  EXPECT_FALSE(fs::exists(home_ / "run/clips"));
+  EXPECT_EQ(temporary_.read("run/mine.txt"), "mine");
+  RunOptions options;
+  options.observers = {&next};
+  EXPECT_THROW(run(b_.graph, options), RunError);
+  EXPECT_FALSE(fs::exists(home_ / "run/.written")) << "run.json lists the files now";
+}
+
+TEST_F(RunFolderTest, ANodesFilesAreKnownBeforeTheyAreThere) {
+  GraphBuilder b(registry_);
+  b.graph.resolved = Json::object();
+  b.output("out", b.add("write", "toy.write", {b.add("source", "toy.source", {}, {{"to", 2}})}, {{"folder", "all"}}));
+  struct Watch : RunObserver {
+    void writes(const std::string& file) override {
+      EXPECT_FALSE(fs::exists(folder / file));
+      files.push_back(file);
+    }
+    fs::path folder;
+    std::vector<std::string> files;
+  } watch;
+  watch.folder = home_ / "run";
+  RunOptions options;
+  options.executor = Executor::serial;
+  options.folder = watch.folder;
+  options.observers = {&watch};
+  run(b.graph, options);
+  EXPECT_THAT(watch.files, testing::UnorderedElementsAre("all/u0.txt", "all/u1.txt"));
+}
+
 TEST_F(RunFolderTest, NamesItselfAfterGraphAndTime) {
   const auto before = fs::current_path();
   fs::current_path(home_);

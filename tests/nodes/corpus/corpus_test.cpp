@@ -228,6 +228,8 @@ TEST_F(ManifestTest, WhatIsWrongWithLandmarksIsToldWithItsPlace) {
   EXPECT_THAT(error("", R"(, "landmarks": {"file": "none.csv", "scheme": "ibug"})"),
               AllOf(HasSubstr("m.json:2:53: error: there is no file or folder"),
                     HasSubstr("no point scheme \"ibug\" (did you mean \"ibug68\"?)")));
+  EXPECT_THAT(error("", R"(, "landmarks": {"scheme": "{\"name\": \"x\"}"})"),
+              AllOf(HasSubstr("m.json:2:55: error: point scheme:1:1: "), HasSubstr("\"mean\" is missing")));
   EXPECT_THAT(
       error("", R"(, "landmarks": {"file": "a.wav", "sparse": 1})"),
       AllOf(HasSubstr("must end in one of .csv, .h5, .hdf5"), HasSubstr("\"sparse\": true or false is expected")));

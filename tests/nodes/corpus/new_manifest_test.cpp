@@ -145,7 +145,8 @@ TEST_F(NewManifestTest, PassesOverWhatCannotBeListed) {
 }
 
 TEST_F(NewManifestTest, ATranscriptMayBeginWithANumber) {
-  for (const char* name : {"a", "b", "c"}) folder.write(std::string(name) + ".mp4", "");
+  for (const char* name : {"a", "b", "c", "d"}) folder.write(std::string(name) + ".mp4", "");
+  folder.write("d.lab", "#!MLF!#\n\"*/d.lab\"\n0 1000000 sil\n1000000 2000000 aa\n.\n");
   folder.write("a.lab", "10 green bottles\nhanging on the wall\n");
   folder.write("b.lab", "2\n");
   folder.write("c.TXT", "Good morning");
@@ -153,6 +154,7 @@ TEST_F(NewManifestTest, ATranscriptMayBeginWithANumber) {
   EXPECT_EQ(clips[0]["transcript"], "10 green bottles hanging on the wall");
   EXPECT_EQ(clips[1]["transcript"], "2");
   EXPECT_EQ(clips[2]["transcript"], "c.TXT");
+  EXPECT_EQ(clips[3]["phones"], "d.lab");
   Diagnostics diagnostics;
   EXPECT_EQ(read_manifest(folder.file("manifest.json"), diagnostics)[2].transcript_file, folder.file("c.TXT"));
 }

@@ -143,6 +143,20 @@ TEST(RankStyle, PutsFirstWhatTheSoundDoesNotExplain) {
   EXPECT_NEAR(by_pose.cells[0][4], 1, 0.02);
   EXPECT_THROW(pose(c, tracks, heard, {}), std::runtime_error);
   EXPECT_THROW(RankStyle{}(c, tracks, {{"b", track(sound)}}, {}), std::runtime_error);
+  Eigen::MatrixXd noise(3000, 2);
+  for (double& v : noise.reshaped()) v = random.normal();
+  EXPECT_THROW(RankStyle{}(c, tracks, {{"a", track(noise)}}, {}), std::runtime_error) << "all would be style";
+  EXPECT_EQ(speed(c, tracks, {{"a", track(noise)}}, {}).rows[0], "1");
+}
+
+TEST(RemoveStyle, LeavesSomeSpeech) {
+  const IndependentComponents c{Eigen::RowVectorXd::Zero(2), Eigen::Matrix2d::Identity(), Eigen::Matrix2d::Identity()};
+  const Track t = track((Eigen::MatrixXd(2, 2) << 1, 2, 3, 4).finished());
+  const Table all{"", "component", {"style"}, {"2", "1"}, {{1}, {0.95}}},
+      one{"", "component", {"style"}, {"2", "1"}, {{1}, {0.5}}};
+  EXPECT_EQ(RemoveStyle{}(c, t, &one).normalised.values, (Eigen::MatrixXd(2, 2) << 1, 0, 3, 0).finished());
+  EXPECT_THROW(RemoveStyle{}(c, t, &all), std::runtime_error);
+  EXPECT_THROW((RemoveStyle{.style = {1, 2}}(c, t, nullptr)), std::runtime_error);
 }
 
 }  // namespace

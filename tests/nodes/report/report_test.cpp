@@ -51,6 +51,16 @@ TEST_F(Report, EscapesNamesAndPaths) {
   EXPECT_THAT(page, HasSubstr("<img src=\"strips/s.png\" alt=\"strip\">"));
 }
 
+TEST_F(Report, HeadsPicturesAsPictures) {
+  const auto page_of = [&](const Collected<Artifact>& clips) {
+    WriteReport{}({}, {}, clips, context);
+    return folder.read("report.html");
+  };
+  EXPECT_THAT(page_of({{"a", {"a.mp4", ""}}}), HasSubstr("<h2>Clips</h2>"));
+  EXPECT_THAT(page_of({{"a", {"a.png", ""}}, {"b", {"b.svg", ""}}}), HasSubstr("<h2>Pictures</h2>"));
+  EXPECT_THAT(page_of({{"a", {"a.png", ""}}, {"b", {"b.webm", ""}}}), HasSubstr("<h2>Clips and pictures</h2>"));
+}
+
 TEST_F(Report, LinksWhatNoPlayerShows) {
   EXPECT_THAT(html_clip("m", {"a b/model.h5", ""}), HasSubstr("<a href=\"a%20b/model.h5\">a b/model.h5</a>"));
 }

@@ -1,13 +1,17 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "graph/graph.h"
+#include "graph/registry.h"
 #include "nodes/speaker/articulation.h"
 #include "nodes/speaker/builtin.h"
 #include "nodes/speaker/face.h"
 #include "nodes/speaker/head_motion.h"
+#include "nodes/speaker/register.h"
 #include "nodes/speaker/renderer.h"
 #include "nodes/speaker/sentences.h"
 
@@ -164,6 +168,23 @@ TEST(Sentences, AreManyAndDistinct) {
   for (std::size_t i = 0; i < speaker_sentence_count(); ++i) all.insert(speaker_sentence(i));
   EXPECT_EQ(all.size(), speaker_sentence_count());
   EXPECT_GE(all.size(), 300u);
+}
+
+TEST(BuiltinSpeaker, ImpossibleNumbersAreRefusedWhenAGraphIsChecked) {
+  Registry registry;
+  register_speaker(registry);
+  const auto complaints = [&](const std::string& params) {
+    Diagnostics diagnostics;
+    const std::string graph =
+        R"({"nodes": {"r": {"type": "speaker.builtin", "params": )" + params + R"(}}, "outputs": {"r": "r"}})";
+    load_graph_text("g.json", graph, registry, diagnostics);
+    return diagnostics.str();
+  };
+  EXPECT_EQ(complaints(R"({"sentences": 5, "held_out": 2, "validation": 2})"), "");
+  EXPECT_THAT(complaints(R"({"sentences": 5, "held_out": 5})"),
+              testing::HasSubstr("g.json:1:55: error: node \"r\": 5 held out and"));
+  EXPECT_THAT(complaints(R"({"height": 301})"), testing::HasSubstr("height must be even, got 301"));
+  EXPECT_THAT(complaints(R"({"sentences": "x", "held_out": 50})"), testing::Not(testing::HasSubstr("held out")));
 }
 
 TEST(BuiltinSpeaker, ImpossibleNumbersAreRefused) {

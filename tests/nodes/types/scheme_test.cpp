@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 namespace talkgraph {
 namespace {
 
@@ -79,6 +82,32 @@ TEST(PointScheme, AllThatIsWrongIsToldWithItsPlace) {
   EXPECT_THAT(complaints(R"({"name": "x", "mean": [[0, 1], [0, 2], [0, 3]]})"), HasSubstr("lie on one line"));
   EXPECT_THAT(complaints(R"({"name": "", "mean": [[0, 1], 3, [2, "x"]]})"), HasSubstr("a list of [x, y]"));
   EXPECT_THAT(complaints("{"), HasSubstr("s.json:1:"));
+}
+
+TEST(PointScheme, AFaceWithoutAreaOrNamesIsRefused) {
+  const auto of = [](const std::string& rest) { return complaints("{\"name\": \"x\", " + rest + "}"); };
+  EXPECT_THAT(of(R"("mean": [[0, 0], [1, 1], [2, 2.0000001]])"), HasSubstr("lie on one line"));
+  EXPECT_THAT(of(R"("mean": [[1, 1], [1, 1], [1, 1]])"), HasSubstr("lie on one line"));
+  EXPECT_THAT(of("\n\"mean\": [[0, 0], [5, 0], [2, 3],\n[5, 0]]"),
+              HasSubstr("s.json:3:1: error: point 3 lies where point 1"));
+  EXPECT_THAT(of("\n\"mean\": [[0, 0], [1e200, 0], [2, 3]]"),
+              HasSubstr("s.json:2:19: error: a number from -1e+06 to 1e+06 is expected"));
+  EXPECT_EQ(of(R"("mean": [[0, 0], [1e-9, 0], [0, 1e-9]])"), "");
+  const std::string mean = R"("mean": [[0, 0], [5, 0], [2, 3]], )";
+  EXPECT_THAT(of(mean + R"("triangles": [[0, 1, 2],)"
+                        "\n[2, 0, 1]]"),
+              HasSubstr("s.json:2:1: error: this triangle stands here twice"));
+  EXPECT_THAT(of(mean + R"("names": {"": 1})"), HasSubstr("a name must not be empty"));
+}
+
+TEST(PointScheme, TheExampleOfTheDocumentationServesThePipelines) {
+  std::ifstream page(TALKGRAPH_SOURCE_DIR "/docs/schemes.md");
+  const std::string text{std::istreambuf_iterator<char>(page), {}};
+  const auto from = text.find("```json") + 7;
+  const auto scheme = *find_scheme(text.substr(text.find('{', from), text.find("```", from) - text.find('{', from)));
+  for (const char* part : {"mouth_left", "mouth_top", "mouth_right", "mouth_bottom", "inner_top", "inner_bottom"})
+    EXPECT_NO_THROW(scheme.point(part)) << part;
+  for (const char* group : {"outer_lips", "inner_lips"}) EXPECT_GE(scheme.named(group).size(), 3u) << group;
 }
 
 TEST(PointScheme, BuiltInOnesAreWhole) {

@@ -209,10 +209,5 @@ TEST_F(OpensElsewhere, InPython) {
   expect_success("/usr/bin/python3 " TALKGRAPH_SOURCE_DIR "/tests/nodes/write/check_hdf5.py");
 }
 
-TEST_F(OpensElsewhere, InOctave) {
-  if (!runs("octave-cli --version")) GTEST_SKIP() << "Octave is not installed: apt-get install octave";
-  expect_success("octave-cli --quiet --no-init-file " TALKGRAPH_SOURCE_DIR "/tests/nodes/write/check_hdf5.m");
-}
-
 }  // namespace
 }  // namespace talkgraph
