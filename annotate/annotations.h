@@ -17,11 +17,18 @@ struct Annotation {
   bool done = false;  ///< else a draft, which nothing is learnt from
 };
 
-/// Tells two states of a frame apart; of a frame without annotation: "none".
-std::string tag_of(const std::optional<Annotation>& annotation);
+/// What there is of one frame.
+struct Kept {
+  std::optional<Annotation> annotation;
+  std::string broken;  ///< why what is there cannot be used, with the name of the file; else empty
+};
+
+/// Tells two states of a frame apart; of a frame of which there is nothing: "none".
+std::string tag_of(const Kept& kept);
 
 /// Annotations in files, which are all that is kept: FOLDER/CLIP/000012.pts of a frame that is done, 000012.draft of
-/// one that is not, both as nodes/write/landmarks.h has them. A file appears whole or not at all. May be used by any
+/// one that is not, both as nodes/write/landmarks.h has them. A file of another number of digits, 12.pts, counts as
+/// well and keeps its name; two files of one frame are broken. A file appears whole or not at all. May be used by any
 /// threads.
 class Annotations {
  public:
@@ -30,15 +37,13 @@ class Annotations {
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Nothing if there is none. Throws std::runtime_error that names a file that is malformed or of another number of
-  /// points.
-  std::optional<Annotation> read(const std::string& clip, std::int64_t frame) const;
+  Kept read(const std::string& clip, std::int64_t frame) const;
 
-  /// Keeps `next` if the frame still has the state `tag`; gives the state that it then has. Throws std::runtime_error
-  /// that names a file that cannot be written.
+  /// Keeps `next` if the frame still has the state `tag`; gives the state that it then has. A broken file is put aside
+  /// as 000012.pts.broken. Throws std::runtime_error that names a file that cannot be written.
   struct Written {
     bool kept = false;
-    std::optional<Annotation> now;
+    Kept now;
   };
   Written write(const std::string& clip, std::int64_t frame, const Annotation& next, const std::string& tag);
 
@@ -46,7 +51,9 @@ class Annotations {
   std::vector<std::int64_t> frames(const std::string& clip) const;
 
  private:
-  std::optional<Annotation> read_unlocked(const std::string& clip, std::int64_t frame) const;
+  std::vector<std::filesystem::path> files(const std::string& clip) const;
+  std::vector<std::filesystem::path> files(const std::string& clip, std::int64_t frame) const;
+  Kept read_unlocked(const std::string& clip, std::int64_t frame) const;
 
   const std::filesystem::path folder_;
   const Eigen::Index points_;

@@ -7,9 +7,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
+#include <fstream>
 #include <set>
 #include <stdexcept>
 
+#include "graph/key.h"
 #include "graph/output_file.h"
 #include "nodes/corpus/labels.h"
 #include "nodes/corpus/manifest.h"
@@ -31,47 +34,48 @@ std::size_t offset_of(const Place& place, const std::string& text) {
 }
 
 /// Puts the member "landmarks" before another one, which keeps its place in a line of its own.
-void tell_manifest(const std::string& manifest, const Place& before, const Json& landmarks) {
-  std::string text = read_text_file(manifest);
+std::string with_landmarks(std::string text, const Place& before, const Json& landmarks) {
   const auto at = offset_of(before, text);
   const auto line = text.rfind('\n', at) + 1;  // 0 in the first line
   const std::string indent = text.substr(line, at - line);
   const bool alone = line > 0 && indent.find_first_not_of(" \t") == std::string::npos;
-  text.insert(at, fmt::format("\"landmarks\": {},{}", landmarks.dump(), alone ? "\n" + indent : " "));
-  write_file(manifest, text);
+  return text.insert(at, fmt::format("\"landmarks\": {},{}", landmarks.dump(), alone ? "\n" + indent : " "));
 }
 
-/// The folder of annotations as the manifest has it; it is told where it says nothing.
-LandmarkFolder landmark_folder(const std::string& manifest, const std::string& scheme, Diagnostics& diagnostics) {
-  auto folder = read_landmark_folder(manifest, diagnostics);
-  const auto wanted = scheme.ends_with(".json") ? scheme_text(scheme, diagnostics) : scheme;
-  if (!diagnostics.ok()) return folder;
-  if (!folder.path.empty()) {
-    if (folder.scheme.empty()) folder.scheme = "ibug68";
-    if (!scheme.empty() && wanted != folder.scheme)
-      throw std::invalid_argument(manifest + ": names another point scheme; change it there, with another folder");
-    return folder;
-  }
-  folder.scheme = wanted.empty() ? "ibug68" : wanted;
-  if (!find_scheme(folder.scheme)) throw std::invalid_argument(unknown_scheme(folder.scheme));
-  const auto home = fs::absolute(manifest).parent_path();
-  constexpr auto name = "annotated";
-  const auto in_manifest =
-      scheme.ends_with(".json") ? fs::relative(fs::absolute(scheme), home).string() : folder.scheme;
-  tell_manifest(manifest, folder.place, {{"folder", name}, {"scheme", in_manifest}});
-  folder.path = (home / name).string();
-  return folder;
+/// Writes a file anew with the rights that it had, also through a symbolic link.
+void rewrite_file(const std::string& path, const std::string& text) {
+  if (access(path.c_str(), W_OK) != 0)
+    throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+  OutputFile whole(fs::canonical(path));
+  write_file(whole.part(), text);
+  fs::permissions(whole.part(), fs::status(path).permissions());
+  whole.finish();
 }
 
-bool is_ours(const ManifestClip& clip, const LandmarkFolder& folder) {
-  return clip.landmarks.path.empty() || fs::path(clip.landmarks.path).parent_path() == fs::path(folder.path);
+/// "annotated" beside manifest.json; manifests of other names have folders of their own.
+std::string folder_beside(const fs::path& manifest) {
+  if (manifest.filename() == "manifest.json") return "annotated";
+  const auto name = manifest.extension() == ".json" ? manifest.stem() : manifest.filename();
+  return name.string() + "-annotated";
 }
 
-std::vector<Clip> clips_to_annotate(const std::vector<ManifestClip>& all, const LandmarkFolder& folder) {
+bool is_ours(const ManifestClip& clip, const fs::path& folder) {
+  return clip.landmarks.path.empty() || fs::path(clip.landmarks.path).parent_path() == folder;
+}
+
+/// Opened once, when first asked for.
+std::function<Video()> pictures_of(const ManifestClip& clip) {
+  return [clip, video = Video()]() mutable {
+    if (!video.source) video = open_pictures(clip);
+    return video;
+  };
+}
+
+std::vector<Clip> clips_to_annotate(const std::vector<ManifestClip>& all, const fs::path& folder) {
   std::vector<Clip> clips;
   for (const auto& clip : all) {
     if (clip.split != "train" || clip.video.empty() || !is_ours(clip, folder)) continue;
-    clips.push_back({clip.id, [clip] { return open_pictures(clip); }, {}});
+    clips.push_back({clip.id, pictures_of(clip), {}});
     if (!clip.phones.empty()) clips.back().phones = read_phones(clip.phones);
   }
   return clips;
@@ -89,25 +93,68 @@ std::vector<Frame> all_frames(const std::vector<Clip>& clips, const Annotations&
   return frames;
 }
 
+/// Throws std::runtime_error if no file can be made in a folder.
+void check_writable(const fs::path& folder) {
+  const OutputFile probe(folder / "probe");
+  errno = 0;
+  if (!std::ofstream(probe.part()))
+    throw std::runtime_error(fmt::format("{}: cannot be written to: {}", folder.string(), std::strerror(errno)));
+}
+
 }  // namespace
+
+/// Where annotations are, as the manifest says it or will be told.
+struct Project::Destination {
+  fs::path folder;
+  std::string scheme;  ///< as landmarks carry it
+  Json untold;
+
+  static Destination find(const std::string& manifest, const std::string& scheme, Diagnostics& diagnostics) {
+    const auto said = read_landmark_folder(manifest, diagnostics);
+    const bool own = scheme.ends_with(".json");
+    const auto wanted = own ? scheme_text(scheme, diagnostics) : scheme;
+    if (!diagnostics.ok()) return {};
+    const std::string usual = "ibug68";
+    if (!said.path.empty()) {
+      const auto& there = said.scheme.empty() ? usual : said.scheme;
+      if (!scheme.empty() && wanted != there)
+        throw std::invalid_argument(manifest + ": names another point scheme; change it there, with another folder");
+      return {said.path, there, {}};
+    }
+    const auto chosen = wanted.empty() ? usual : wanted;
+    if (!find_scheme(chosen)) throw std::invalid_argument(unknown_scheme(chosen));
+    const auto home = fs::absolute(manifest).parent_path();
+    const auto name = folder_beside(manifest);
+    const auto named = own ? fs::relative(fs::absolute(scheme), home).string() : chosen;
+    return {home / name, chosen, {{"folder", name}, {"scheme", named}}};
+  }
+};
 
 std::unique_ptr<Project> Project::open(const std::string& manifest, const ProjectOptions& options,
                                        Diagnostics& diagnostics) {
   const auto all = read_manifest(manifest, diagnostics);
   if (!diagnostics.ok()) return nullptr;
-  const auto folder = landmark_folder(manifest, options.scheme, diagnostics);
+  auto destination = Destination::find(manifest, options.scheme, diagnostics);
   if (!diagnostics.ok()) return nullptr;
-  auto clips = clips_to_annotate(all, folder);
+  auto clips = clips_to_annotate(all, destination.folder);
   if (clips.empty())
     throw std::runtime_error(
         manifest +
         ": there is no clip to annotate: none of the split \"train\" has a \"video\" and no landmarks of its own");
-  return std::unique_ptr<Project>(
-      new Project(manifest, std::move(clips), *find_scheme(folder.scheme), folder.scheme, folder.path, options));
+  return std::unique_ptr<Project>(new Project(manifest, std::move(clips), std::move(destination), options));
+}
+
+void Project::tell_manifest() const {
+  if (untold_.is_null()) return;
+  Diagnostics diagnostics;
+  const auto said = read_landmark_folder(manifest_, diagnostics);
+  if (!diagnostics.ok() || !said.path.empty())
+    throw std::runtime_error(manifest_ + ": was changed by another program just now; start again");
+  rewrite_file(manifest_, with_landmarks(read_text_file(manifest_), said.place, untold_));
 }
 
 FolderLock::FolderLock(const fs::path& folder) {
-  fs::create_directories(folder);
+  check_writable(folder);
   descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   const bool taken = errno == EWOULDBLOCK;
@@ -118,40 +165,70 @@ FolderLock::FolderLock(const fs::path& folder) {
 
 FolderLock::~FolderLock() { close(descriptor_); }
 
-Project::Project(std::string manifest, std::vector<Clip> clips, PointScheme scheme, std::string scheme_name,
-                 fs::path folder, const ProjectOptions& options)
+Project::Project(std::string manifest, std::vector<Clip> clips, Destination destination, const ProjectOptions& options)
     : manifest_(std::move(manifest)),
       clips_(std::move(clips)),
-      scheme_(std::move(scheme)),
-      scheme_name_(std::move(scheme_name)),
-      lock_(folder),
-      annotations_(std::move(folder), scheme_.points()),
+      scheme_(*find_scheme(destination.scheme)),
+      scheme_name_(std::move(destination.scheme)),
+      untold_(std::move(destination.untold)),
+      lock_(destination.folder),
+      annotations_(std::move(destination.folder), scheme_.points()),
       frames_(all_frames(clips_, annotations_, options)),
-      beginner_(scheme_.mean) {}
+      beginner_(scheme_.mean) {
+  std::map<std::size_t, Key> pictures;
+  for (const auto& frame : frames_) {
+    const auto& clip = clips_[frame.clip];
+    auto& key = pictures[frame.clip];
+    if (!key) {
+      key = clip.video().source->key();
+      if (fs::exists(folder() / clip.id)) check_writable(folder() / clip.id);
+    }
+    keys_.push_back(KeyMaker()
+                        .add(fs::absolute(folder()).string())
+                        .add(scheme_name_)
+                        .add(clip.id)
+                        .add(key)
+                        .add(std::to_string(frame.number))
+                        .key()
+                        .str());
+  }
+}
+
+std::optional<std::size_t> Project::find(const std::string& key) const {
+  const auto found = std::find(keys_.begin(), keys_.end(), key);
+  return found == keys_.end() ? std::nullopt : std::optional<std::size_t>(found - keys_.begin());
+}
+
+std::int64_t Project::length(std::size_t frame) const { return clips_[frames_[frame].clip].video().source->frames(); }
 
 void Project::read_clip(std::size_t clip) {
+  const Video video = clips_[clip].video();
   std::set<std::int64_t> wanted;
   for (const auto& frame : frames_)
-    if (frame.clip == clip) wanted.insert(frame.number);
-  const Video video = clips_[clip].video();
+    if (frame.clip == clip && frame.number < video.source->frames()) wanted.insert(frame.number);
   const auto reader = video.source->open();
   cv::Mat picture;
-  for (std::int64_t n = 0; n <= *wanted.rbegin(); ++n) {
-    if (!reader->next(picture))
-      throw std::runtime_error(fmt::format("{}: has no frame {}", video.source->name(), *wanted.rbegin()));
+  for (std::int64_t n = 0; n <= *wanted.rbegin() && reader->next(picture); ++n)
     if (wanted.contains(n)) pictures_[{clip, n}] = picture.clone();
-  }
 }
 
 cv::Mat Project::picture(std::size_t frame) {
   const std::lock_guard lock(pictures_mutex_);
   const std::pair key(frames_[frame].clip, frames_[frame].number);
-  if (!pictures_.contains(key)) read_clip(key.first);
-  return pictures_.at(key);
+  if (!pictures_.contains(key) && key.second < length(frame)) read_clip(key.first);
+  const auto found = pictures_.find(key);
+  if (found == pictures_.end())
+    throw std::runtime_error(fmt::format("{}: has no frame {}", clips_[key.first].video().source->name(), key.second));
+  return found->second;
 }
 
-std::optional<Annotation> Project::annotation(std::size_t frame) const {
-  return annotations_.read(clip(frame), frames_[frame].number);
+Kept Project::kept(std::size_t frame) const {
+  const auto number = frames_[frame].number;
+  if (number >= length(frame))
+    return {{},
+            fmt::format("{}: there is a file of frame {}, and the clip has the frames 0 to {}; remove the file",
+                        (folder() / clip(frame)).string(), number, length(frame) - 1)};
+  return annotations_.read(clip(frame), number);
 }
 
 Annotations::Written Project::annotate(std::size_t frame, const Annotation& next, const std::string& tag) {
@@ -173,9 +250,9 @@ Beginning Project::begin(std::size_t frame) {
   std::vector<Example> examples;
   std::string state;
   for (std::size_t other = 0; other < frames_.size(); ++other) {
-    const auto known = other == frame ? std::nullopt : annotation(other);
-    if (!known || !known->done) continue;
-    examples.push_back({picture(other), known->points});
+    const auto known = other == frame ? Kept() : kept(other);
+    if (!known.annotation || !known.annotation->done) continue;
+    examples.push_back({picture(other), known.annotation->points});
     state += tag_of(known) + " ";
   }
   return beginner_.begin(picture(frame), examples, state, scheme_name_);

@@ -15,7 +15,8 @@
 
 namespace talkgraph::annotate {
 
-/// Holds a folder, which it makes, against other processes and projects. Throws std::runtime_error if one has it.
+/// Holds a folder, which it makes, against other processes and projects. Throws std::runtime_error if one has it or
+/// nothing can be written there.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);
@@ -37,21 +38,27 @@ struct ProjectOptions {
 /// landmarks of their own. May be used by any threads.
 class Project {
  public:
-  /// Where the manifest does not yet say where annotations are, it is told: "landmarks": {"folder": "annotated", ...}.
   /// What is wrong with the manifest goes to `diagnostics`; then, null. Throws std::runtime_error if there is no clip
-  /// to annotate or a file cannot be read or written.
+  /// to annotate or a file cannot be read or written. Changes no file.
   static std::unique_ptr<Project> open(const std::string& manifest, const ProjectOptions& options,
                                        Diagnostics& diagnostics);
+  /// Where the manifest does not yet say where annotations are, it is told: "landmarks": {"folder": "annotated", ...}.
+  /// Throws std::runtime_error if it cannot be written.
+  void tell_manifest() const;
 
   const std::string& manifest() const { return manifest_; }
   const PointScheme& scheme() const { return scheme_; }
   const std::vector<Frame>& frames() const { return frames_; }
   const std::string& clip(std::size_t frame) const { return clips_[frames_[frame].clip].id; }
   const std::filesystem::path& folder() const { return annotations_.folder(); }
+  /// Names folder, scheme, pictures, clip and number of a frame: what is meant for it meets no other.
+  const std::string& key(std::size_t frame) const { return keys_[frame]; }
+  std::optional<std::size_t> find(const std::string& key) const;
 
   /// Decoded when first asked for, with all others of its clip. Throws std::runtime_error that names the video.
   cv::Mat picture(std::size_t frame);
-  std::optional<Annotation> annotation(std::size_t frame) const;
+  /// A frame of which there is a file although its clip is shorter is broken.
+  Kept kept(std::size_t frame) const;
   /// Throws std::invalid_argument unless the points are the scheme's in number, near the picture, and, for a frame that
   /// is done, in it: nothing is learnt from a face that leaves the picture.
   Annotations::Written annotate(std::size_t frame, const Annotation& next, const std::string& tag);
@@ -59,17 +66,20 @@ class Project {
   Beginning begin(std::size_t frame);
 
  private:
-  Project(std::string manifest, std::vector<Clip> clips, PointScheme scheme, std::string scheme_name,
-          std::filesystem::path folder, const ProjectOptions& options);
+  struct Destination;
+  Project(std::string manifest, std::vector<Clip> clips, Destination destination, const ProjectOptions& options);
+  std::int64_t length(std::size_t frame) const;
   void read_clip(std::size_t clip);
 
   const std::string manifest_;
   const std::vector<Clip> clips_;
   const PointScheme scheme_;
   const std::string scheme_name_;  ///< as landmarks carry it
+  const Json untold_;              ///< what the manifest does not say yet, or null
   const FolderLock lock_;
   Annotations annotations_;
   std::vector<Frame> frames_;
+  std::vector<std::string> keys_;
   Beginner beginner_;
   std::mutex pictures_mutex_;
   std::map<std::pair<std::size_t, std::int64_t>, cv::Mat> pictures_;  ///< by clip and number

@@ -1,12 +1,10 @@
 #include "annotate/server.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
-#include <chrono>
 #include <stdexcept>
-#include <thread>
 
+#include "annotate/bounded_server.h"
 #include "nodes/codecs/codecs.h"
 #include "nodes/types/codec.h"
 
@@ -27,7 +25,7 @@ constexpr const char* page_script =
     ;
 
 constexpr auto address = "127.0.0.1";
-constexpr std::size_t longest_body = 1 << 18;
+constexpr std::size_t longest_body = 1 << 18, longest_request = longest_body + (1 << 15);
 
 /// What a request is refused with.
 struct Refusal : std::runtime_error {
@@ -67,13 +65,20 @@ Annotation annotation_in(const std::string& body) {
   return {points_in(json["points"]), json["done"].get<bool>()};
 }
 
-const char* state_of(const std::optional<Annotation>& annotation) {
-  return !annotation ? "new" : annotation->done ? "done" : "draft";
+const char* state_of(const Kept& kept) {
+  if (!kept.broken.empty()) return "broken";
+  return !kept.annotation ? "new" : kept.annotation->done ? "done" : "draft";
 }
 
-Json to_json(const std::optional<Annotation>& annotation) {
-  Json json = {{"state", state_of(annotation)}, {"tag", tag_of(annotation)}};
-  if (annotation) json["points"] = to_json(annotation->points);
+Json state_and_tag(const Kept& kept) {
+  Json json = {{"state", state_of(kept)}, {"tag", tag_of(kept)}};
+  if (!kept.broken.empty()) json["reason"] = kept.broken;
+  return json;
+}
+
+Json to_json(const Kept& kept) {
+  Json json = state_and_tag(kept);
+  if (kept.annotation) json["points"] = to_json(kept.annotation->points);
   return json;
 }
 
@@ -97,6 +102,12 @@ void check_source(const Request& request) {
     throw Refusal(403, "this server is reached as 127.0.0.1 or localhost, and by no other name");
   if (request.has_header("Origin") && request.get_header_value("Origin") != "http://" + host)
     throw Refusal(403, "a page of another origin asks");
+}
+
+/// The page sends bodies as they are, with their length, which bounds them; and asks for whole files.
+void check_kind(const Request& request) {
+  for (const char* name : {"Content-Encoding", "Transfer-Encoding", "Range"})
+    if (request.has_header(name)) throw Refusal(400, fmt::format("a request with {} is not served", name));
 }
 
 void answer(Response& response, const Json& json, int status = 200) {
@@ -133,32 +144,33 @@ struct Server::State {
   explicit State(Project& project) : project(project) {}
 
   std::size_t frame_of(const Request& request) const {
-    const auto frame = std::stoul(request.matches[1].str());
-    if (frame >= project.frames().size()) throw Refusal(404, "there is no such frame");
-    return frame;
+    if (const auto frame = project.find(request.matches[1].str())) return *frame;
+    throw Refusal(404, "there is no such frame");
   }
 
   Json describe() const {
     Json frames = Json::array();
     for (std::size_t f = 0; f < project.frames().size(); ++f)
-      frames.push_back(
-          {{"clip", project.clip(f)}, {"number", project.frames()[f].number}, {"phone", project.frames()[f].phone}});
+      frames.push_back({{"key", project.key(f)},
+                        {"clip", project.clip(f)},
+                        {"number", project.frames()[f].number},
+                        {"phone", project.frames()[f].phone}});
     return {{"manifest", project.manifest()}, {"scheme", to_json(project.scheme())}, {"frames", frames}};
   }
 
   Json states() const {
     Json all = Json::array();
     for (std::size_t f = 0; f < project.frames().size(); ++f) {
-      const auto annotation = project.annotation(f);
-      all.push_back({{"state", state_of(annotation)}, {"tag", tag_of(annotation)}});
+      all.push_back({{"key", project.key(f)}});
+      all.back().update(state_and_tag(project.kept(f)));
     }
     return all;
   }
 
   Json read(std::size_t frame) const {
-    const auto annotation = project.annotation(frame);
-    Json json = to_json(annotation);
-    if (!annotation) json.update(to_json(project.begin(frame)));
+    const auto kept = project.kept(frame);
+    Json json = to_json(kept);
+    if (!kept.annotation) json.update(to_json(project.begin(frame)));
     return json;
   }
 
@@ -185,24 +197,21 @@ struct Server::State {
     server.Get("/annotate.js", page(page_script, "text/javascript; charset=utf-8"));
     server.Get("/api/project", [this](const Request&, Response& out) { answer(out, describe()); });
     server.Get("/api/frames", [this](const Request&, Response& out) { answer(out, states()); });
-    server.Get(R"(/api/frames/(\d{1,6}))",
-               [this](const Request& in, Response& out) { answer(out, read(frame_of(in))); });
-    server.Get(R"(/api/frames/(\d{1,6})/begin)",
+    const std::string frame = "/api/frames/([0-9a-f]{32})";
+    server.Get(frame, [this](const Request& in, Response& out) { answer(out, read(frame_of(in))); });
+    server.Get(frame + "/begin",
                [this](const Request& in, Response& out) { answer(out, to_json(project.begin(frame_of(in)))); });
-    server.Get(R"(/api/frames/(\d{1,6})/picture)",
-               [this](const Request& in, Response& out) { send_picture(frame_of(in), out); });
-    server.Put(R"(/api/frames/(\d{1,6}))", [this](const Request& in, Response& out) { write(in, out); });
+    server.Get(frame + "/picture", [this](const Request& in, Response& out) { send_picture(frame_of(in), out); });
+    server.Put(frame, [this](const Request& in, Response& out) { write(in, out); });
   }
 
   void protect() {
     server.set_default_headers(headers);
     server.set_payload_max_length(longest_body);
-    // One request a connection: the body of one that was refused unread must not be taken for the next.
-    server.set_keep_alive_max_count(1);
-    server.set_read_timeout(std::chrono::seconds(5));
     server.set_pre_routing_handler([](const Request& request, Response& response) {
       try {
         check_source(request);
+        check_kind(request);
         return httplib::Server::HandlerResponse::Unhandled;
       } catch (const Refusal&) {
         answer_failure(response, std::current_exception());
@@ -220,7 +229,7 @@ struct Server::State {
   }
 
   Project& project;
-  httplib::Server server;
+  BoundedServer server{longest_request};
 };
 
 Server::Server(Project& project, int port) : state_(std::make_unique<State>(project)) {
@@ -236,17 +245,6 @@ Server::~Server() = default;
 
 std::string Server::url() const { return fmt::format("http://{}:{}/", address, port_); }
 
-void Server::run(const std::atomic<bool>& stop) {
-  std::atomic<bool> ended = false;
-  std::thread watch([&] {
-    while (!ended) {
-      if (stop) state_->server.stop();
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-  });
-  state_->server.listen_after_bind();
-  ended = true;
-  watch.join();
-}
+void Server::run(const std::atomic<bool>& stop) { state_->server.run(stop); }
 
 }  // namespace talkgraph::annotate

@@ -11,14 +11,16 @@ namespace talkgraph::annotate {
 /// Serves the page on which a person annotates a project, on this computer alone (127.0.0.1). Requests that name
 /// another host or come from a page of another origin are refused, so that no site in the same browser reaches it.
 ///
-///   GET  /api/project             scheme and frames
-///   GET  /api/frames              state and tag of every frame
-///   GET  /api/frames/N            points, state ("new", "draft", "done"), tag; of a new one, points to begin with
-///   GET  /api/frames/N/begin      points to begin with, whatever its state
-///   GET  /api/frames/N/picture    PNG
-///   PUT  /api/frames/N            {"points": [[x, y], ...], "done": ...}; If-Match: the tag that was changed
+///   GET  /api/project               scheme and frames, each with its KEY
+///   GET  /api/frames                key, state and tag of every frame
+///   GET  /api/frames/KEY            points, state ("new", "draft", "done", "broken"), tag; of a new or broken one
+///                                   points to begin with; of a broken one the reason
+///   GET  /api/frames/KEY/begin      points to begin with, whatever its state
+///   GET  /api/frames/KEY/picture    PNG
+///   PUT  /api/frames/KEY            {"points": [[x, y], ...], "done": ...}; If-Match: the tag that was changed
 ///
-/// A PUT answers 412 with what is there if the frame has another tag by now.
+/// A PUT answers 412 with what is there if the frame has another tag by now, and 404 if this project has no such frame:
+/// a page that another project has made changes nothing here.
 class Server {
  public:
   /// Port 0: any free one. Throws std::runtime_error if the port is taken.

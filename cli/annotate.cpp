@@ -19,6 +19,7 @@ int run_annotate(const std::string& manifest, const AnnotateCommand& command) {
   }
   const InterruptGuard guard;
   annotate::Server server(*project, command.port);
+  project->tell_manifest();
   fmt::print(stderr, "{} frames to annotate; every change is kept in {}; Ctrl-C ends. Open this page:\n",
              project->frames().size(), project->folder().string());
   fmt::print("{}\n", server.url());

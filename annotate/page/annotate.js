@@ -5,11 +5,13 @@ const $ = (id) => document.getElementById(id);
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const steps_kept = 100;
 
-let manifest, scheme, frames = [];
+let scheme, frames = [];
 let current = null, opened = null, selected = 0;  // opened: the frame whose picture is shown
 let view = { scale: 1, x: 0, y: 0 }, size = null;  // a point p is drawn at scale · p + (x, y)
 let drag = null;
-let offline = false, note = "";
+let trouble = "", note = "";  // trouble: why the server takes no changes
+const gone = "the server does not answer", moved_on = "the server has other frames now";
+const remedies = { [gone]: ": start it again", [moved_on]: ": start it as it was before, or reload to give it up" };
 
 // ---------------------------------------------------------------- talking to the server
 
@@ -25,12 +27,18 @@ async function get(path) {
   return answer;
 }
 
+const what_failed = (error) => (error instanceof TypeError ? gone : error.message);
+const url_of = (frame) => `api/frames/${frame.key}`;
+
 const rounded = (points) => points.map(([x, y]) => [Math.round(100 * x) / 100, Math.round(100 * y) / 100]);
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
+function take_state(frame, { state, tag, reason }) {
+  Object.assign(frame, { state, tag, reason });
+}
+
 function take(frame, answer) {
-  frame.state = answer.state;
-  frame.tag = answer.tag;
+  take_state(frame, answer);
   frame.by = answer.by;
   frame.done = answer.state === "done";
   if (answer.points) frame.points = rounded(answer.points);
@@ -39,7 +47,7 @@ function take(frame, answer) {
 /** Takes what the server has, unless the person is faster. */
 async function load(frame) {
   const edits = frame.edits;
-  const answer = await get(`api/frames/${frame.index}`);
+  const answer = await get(url_of(frame));
   if (frame.edits !== edits || frame.saving || drag) return;
   if (frame.points && answer.tag !== "none" && !same(frame.points, rounded(answer.points))) keep_step(frame);
   take(frame, answer);
@@ -55,41 +63,47 @@ async function send(frame) {
   frame.saving = true;
   while (frame.unsaved) {
     frame.unsaved = false;
-    const sent = { points: frame.points, done: frame.done };
-    frame.sent.push(sent);
     try {
-      const { status, answer } = await request(`api/frames/${frame.index}`, {
-        method: "PUT",
-        keepalive: true,
-        headers: { "Content-Type": "application/json", "If-Match": frame.tag },
-        body: JSON.stringify(sent),
-      });
-      offline = false;
-      if (status === 412) {
-        meet_other_state(frame, answer);
-      } else if (status === 200) {
-        frame.state = answer.state;
-        frame.tag = answer.tag;
-      } else {
-        note = answer.error;
-        frame.done = frame.state === "done";
-      }
-      frame.sent = [];
-    } catch {
-      offline = true;
-      frame.unsaved = true;
-      show_status();
-      await sleep(500);
+      trouble = await put(frame);
+    } catch (error) {
+      trouble = what_failed(error);
     }
+    if (!trouble) continue;
+    frame.unsaved = true;
+    show_status();
+    await sleep(500);
   }
   frame.saving = false;
   show();
 }
 
+/** What keeps the server from taking the points, or "". */
+async function put(frame) {
+  const sent = { points: frame.points, done: frame.done };
+  if (!same(frame.sent.at(-1), sent)) frame.sent.push(sent);
+  const { status, answer } = await request(url_of(frame), {
+    method: "PUT",
+    keepalive: true,
+    headers: { "Content-Type": "application/json", "If-Match": frame.tag },
+    body: JSON.stringify(sent),
+  });
+  if (status === 404) return moved_on;
+  if (status >= 500) return answer.error;
+  if (status === 412) {
+    meet_other_state(frame, answer);
+  } else if (status === 200) {
+    take_state(frame, answer);
+  } else {
+    note = answer.error;
+    frame.done = frame.state === "done";
+  }
+  frame.sent = [];
+  return "";
+}
+
 /** The server has another state than was changed: what was sent before it was killed, or another's work. */
 function meet_other_state(frame, answer) {
-  frame.state = answer.state;
-  frame.tag = answer.tag;
+  take_state(frame, answer);
   const points = answer.points && rounded(answer.points);
   if (!points || frame.sent.some((sent) => same(sent.points, points))) {
     frame.unsaved = true;
@@ -107,25 +121,32 @@ async function watch() {
   for (;;) {
     await sleep(1000);
     try {
-      const states = await get("api/frames");
-      offline = false;
-      for (const frame of frames) {
-        const now = states[frame.index];
-        if (frame.saving || frame.unsaved || frame.tag === now.tag) continue;
-        if (frame === current) await load(frame);
-        else Object.assign(frame, now, { points: null, done: now.state === "done" });
-      }
+      await follow(await get("api/frames"));
     } catch (error) {
-      if (error instanceof TypeError) offline = true;
-      else note = error.message;
+      trouble = what_failed(error);
     }
     if (!drag) show();
   }
 }
 
-// ---------------------------------------------------------------- what a person changes
+const waiting = () => frames.filter((frame) => frame.unsaved || frame.saving);
 
-const history_name = (frame) => [manifest, scheme.name, frame.clip, frame.number].join("\n");
+async function follow(states) {
+  if (!same(states.map(({ key }) => key), frames.map(({ key }) => key))) {
+    trouble = moved_on;
+    if (!waiting().length && !drag) location.reload();
+    return;
+  }
+  if (!waiting().length) trouble = "";
+  for (const [index, now] of states.entries()) {
+    const frame = frames[index];
+    if (frame.saving || frame.unsaved || frame.tag === now.tag) continue;
+    if (frame === current) await load(frame);
+    else Object.assign(frame, now, { reason: now.reason, points: null, done: now.state === "done" });
+  }
+}
+
+// ---------------------------------------------------------------- what a person changes
 
 function keep_step(frame) {
   frame.past.push(frame.points);
@@ -137,7 +158,7 @@ function edited(frame) {
   frame.edits++;
   note = "";
   try {
-    sessionStorage.setItem(history_name(frame), JSON.stringify({ past: frame.past, future: frame.future }));
+    sessionStorage.setItem(frame.key, JSON.stringify({ past: frame.past, future: frame.future }));
   } catch {
     // No room: the steps end with the page.
   }
@@ -168,8 +189,13 @@ const redo = () => step(current.future, current.past);
 
 async function afresh() {
   const frame = current;
-  const { points } = await get(`api/frames/${frame.index}/begin`);
-  if (frame === current) change(points);
+  try {
+    const { points } = await get(`${url_of(frame)}/begin`);
+    if (frame === current) change(points);
+  } catch (error) {
+    note = what_failed(error);
+    show();
+  }
 }
 
 function set_done(done) {
@@ -415,15 +441,21 @@ const beginnings = {
   model: "new: the model's own fit",
 };
 
+function state_text() {
+  if (current?.state === "new") return beginnings[current.by] ?? "";
+  if (current?.state === "broken") return `${current.reason}${ready() ? "; a change begins the frame anew" : ""}`;
+  return current?.done ? "done, saved" : "draft, saved";
+}
+
 function show_status() {
-  const unsaved = frames.filter((frame) => frame.unsaved || frame.saving).length;
-  let text = current?.state === "new" ? beginnings[current.by] ?? "" : current?.done ? "done, saved" : "draft, saved";
+  const unsaved = waiting().length;
+  let text = state_text();
   if (unsaved) text = "saving …";
   if (opened !== current) text = "opening …";
   if (note) text = note;
-  if (offline) text = `the server does not answer${unsaved ? "; what is not saved waits here: start it again" : ""}`;
+  if (trouble) text = trouble + (unsaved ? `; what is not saved waits here${remedies[trouble] ?? ""}` : "");
   $("status").textContent = text;
-  $("status").className = offline || note ? "bad" : "";
+  $("status").className = trouble || note || current?.state === "broken" ? "bad" : "";
 }
 
 /** All that is beside the picture, and the picture. */
@@ -449,7 +481,7 @@ function load_picture(frame) {
     const picture = new Image();
     picture.onload = () => resolve(picture);
     picture.onerror = () => reject(new Error(`the picture of ${frame.clip}, frame ${frame.number}, cannot be read`));
-    picture.src = `api/frames/${frame.index}/picture`;
+    picture.src = `${url_of(frame)}/picture`;
   });
 }
 
@@ -477,7 +509,7 @@ async function open_frame(index) {
   const frame = frames[index];
   current = frame;
   opened = null;
-  history.replaceState(null, "", `#${index}`);
+  history.replaceState(null, "", `#${frame.key}`);
   note = "";
   show();
   try {
@@ -485,7 +517,7 @@ async function open_frame(index) {
     if (current !== frame) return;
     opened = frame;
   } catch (error) {
-    if (current === frame) note = error instanceof TypeError ? "the server does not answer" : error.message;
+    if (current === frame) note = frame.reason ?? what_failed(error);
   }
   frame.item.scrollIntoView({ block: "nearest" });
   show();
@@ -504,7 +536,7 @@ function listen() {
   // Keys go to the picture again once a button has been clicked.
   addEventListener("click", (event) => { if (event.detail > 0) picture.focus(); });
   addEventListener("beforeunload", (event) => {
-    if (offline && frames.some((frame) => frame.unsaved)) event.preventDefault();
+    if (trouble && waiting().length) event.preventDefault();
   });
   const buttons = { undo, redo, afresh, fit, done: () => set_done(true), reopen: () => set_done(false),
     larger: () => zoom(1.25), smaller: () => zoom(0.8), shown: draw };
@@ -512,19 +544,20 @@ function listen() {
 }
 
 async function main() {
-  const [project, states] = await Promise.all([get("api/project"), get("api/frames")]);
-  ({ manifest, scheme } = project);
+  const project = await get("api/project");
+  scheme = project.scheme;
   frames = project.frames.map((frame, index) => ({
-    ...frame, index, ...states[index], done: states[index].state === "done",
+    ...frame, index, state: "new", tag: "none", done: false,
     points: null, edits: 0, unsaved: false, saving: false, settled: null, sent: [], past: [], future: [],
   }));
-  for (const frame of frames) Object.assign(frame, JSON.parse(sessionStorage.getItem(history_name(frame)) ?? "{}"));
-  document.title = `${manifest} – talkgraph annotate`;
+  for (const frame of frames) Object.assign(frame, JSON.parse(sessionStorage.getItem(frame.key) ?? "{}"));
+  await follow(await get("api/frames"));
+  document.title = `${project.manifest} – talkgraph annotate`;
   make_marks();
   make_list();
   listen();
-  const first = Number(location.hash.slice(1));
-  await open_frame(location.hash && first < frames.length ? first : Math.max(0, frames.findIndex((f) => !f.done)));
+  const wanted = frames.findIndex((frame) => frame.key === location.hash.slice(1));
+  await open_frame(wanted >= 0 ? wanted : Math.max(0, frames.findIndex((frame) => !frame.done)));
   watch();
 }
 

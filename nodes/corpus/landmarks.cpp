@@ -61,13 +61,6 @@ std::vector<std::string> point_files(const std::string& folder) {
   return files;
 }
 
-/// "000012.pts" -> 12; nothing for a file that is not named after a frame.
-std::optional<std::int64_t> frame_of(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  const bool digits = stem.size() < 12 && stem.find_first_not_of("0123456789") == std::string::npos;
-  return digits && !stem.empty() ? std::optional(std::stoll(stem)) : std::nullopt;
-}
-
 /// "s001_012.pts" -> 12.
 std::int64_t last_number(const fs::path& file) {
   constexpr auto digits = "0123456789";
@@ -123,7 +116,7 @@ Frames read_folder(const LandmarkFiles& from, const std::function<Video()>& vide
   const auto files = point_files(from.path);
   if (!from.sparse) check_consecutive(files, from, video);
   for (const auto& file : files) {
-    const auto number = from.sparse ? frame_of(file) : std::optional(std::ssize(frames));
+    const auto number = from.sparse ? frame_in_name(file) : std::optional(std::ssize(frames));
     if (!number) continue;
     const bool relative = ending_of(file) == ".asf";
     if (relative && !size) {
@@ -235,6 +228,12 @@ std::vector<Shape> filled(Frames frames, std::int64_t length, const std::string&
 }
 
 }  // namespace
+
+std::optional<std::int64_t> frame_in_name(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const bool digits = stem.size() < 12 && stem.find_first_not_of("0123456789") == std::string::npos;
+  return digits && !stem.empty() ? std::optional(std::stoll(stem)) : std::nullopt;
+}
 
 Shape read_pts(const std::string& path) {
   std::vector<double> numbers;

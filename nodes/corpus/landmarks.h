@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "nodes/types/shape.h"
@@ -15,6 +18,9 @@ struct LandmarkFiles {
   std::string dataset = "frames";  ///< of HDF5
   bool sparse = false;             ///< of some frames, which the names of the files or the column "frame" tell
 };
+
+/// "000012.pts" and "12.pts" -> 12; nothing for a file that is not named after a frame.
+std::optional<std::int64_t> frame_in_name(const std::filesystem::path& file);
 
 /// The points of one picture in the format of the iBUG annotations; 1-based pixels become 0-based. Throws
 /// std::runtime_error that names the file and the line: not there, malformed, another number of points than it

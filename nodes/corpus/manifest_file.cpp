@@ -189,7 +189,7 @@ bool holds_points(const fs::path& folder) {
   if (!fs::is_directory(folder)) return false;
   const fs::directory_iterator entries(folder);
   return std::any_of(begin(entries), end(entries),
-                     [](const auto& entry) { return entry.path().extension() == ".pts"; });
+                     [](const auto& entry) { return lower_case(entry.path().extension().string()) == ".pts"; });
 }
 
 /// Landmarks of some frames in a folder of the clip's name, unless the clip has its own.

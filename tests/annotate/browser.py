@@ -41,12 +41,13 @@ class Server:
     """talkgraph annotate; a restart takes the port that it had."""
 
     def __init__(self, program, *arguments):
-        self.command = [program, "annotate", *arguments]
-        self.port = 0
+        self.program, self.arguments, self.port = program, arguments, 0
         self.start()
 
-    def start(self):
-        self.process = subprocess.Popen([*self.command, "--port", str(self.port)], stdout=subprocess.PIPE, text=True)
+    def start(self, *arguments):
+        """With other arguments, if some are given."""
+        command = [self.program, "annotate", *(arguments or self.arguments)]
+        self.process = subprocess.Popen([*command, "--port", str(self.port)], stdout=subprocess.PIPE, text=True)
         self.url = self.process.stdout.readline().strip()
         assert self.url, "the server did not start"
         self.port = int(self.url.rstrip("/").rsplit(":", 1)[1])
@@ -66,9 +67,9 @@ class Server:
         with urllib.request.urlopen(self.url + path) as answer:
             return json.load(answer)
 
-    def put(self, frame, points, done, tag):
+    def put(self, key, points, done, tag):
         request = urllib.request.Request(
-            f"{self.url}api/frames/{frame}", json.dumps({"points": points, "done": done}).encode(),
+            f"{self.url}api/frames/{key}", json.dumps({"points": points, "done": done}).encode(),
             {"Content-Type": "application/json", "If-Match": tag}, method="PUT")
         with urllib.request.urlopen(request) as answer:
             return json.load(answer)

@@ -269,11 +269,11 @@ class AnnotateTest(unittest.TestCase):
         self.browser.switch(second)
         wait_for(lambda: self.close(self.shown(), changed), "the other window to follow")
         # A change made before the window has seen another: told, and not lost.
-        index = self.browser.run("return current.index")
-        state = self.server.get(f"api/frames/{index}")
+        key = self.browser.run("return current.key")
+        state = self.server.get(f"api/frames/{key}")
         other = [[x + 3, y] for x, y in state["points"]]
         self.browser.run("frames[current.index].tag = 'of old'")
-        self.server.put(index, other, False, state["tag"])
+        self.server.put(key, other, False, state["tag"])
         self.browser.keys("ArrowDown")
         wait_for(lambda: "another window" in self.status() or self.close(self.shown(), other), "the conflict")
         self.assertTrue(self.close(self.saved(), other))
@@ -283,6 +283,80 @@ class AnnotateTest(unittest.TestCase):
         self.browser.close_window()
         self.browser.switch(first)
         wait_for(lambda: self.close(self.shown(), mine), "the first window to follow")
+
+    def file(self, ending):
+        frame = self.server.get("api/project")["frames"][self.browser.run("return current.index")]
+        return self.folder / "annotated" / frame["clip"] / f"{frame['number']:06}{ending}"
+
+    def listed(self):
+        return self.browser.run("return [...document.querySelectorAll('#frames button')].map(b => b.textContent)")
+
+    def test_a_page_of_other_frames_takes_the_new_ones(self):
+        before, scheme = self.listed(), self.server.arguments[-2:]
+        manifest = str(self.folder / "manifest.json")
+        self.drag(6, 10, 0)
+        self.saved()
+        self.server.stop()
+        self.server.start(manifest, "--frames", "2", "--seed", "7", *scheme)
+        names = [f"{f['clip']} · {f['number']}" for f in self.server.get("api/project")["frames"]]
+        self.assertNotEqual(names, before)
+        wait_for(lambda: self.listed() == names, "the page to take the new frames")
+        self.ready()
+        self.drag(7, 10, 0)
+        self.saved()
+
+    def test_no_change_reaches_another_project(self):
+        (self.folder / "other.json").write_text(json.dumps({"rate": 25, "clips": [
+            {"id": "clip", "video": "clip", "audio": "a.wav"}]}))
+        scheme = self.server.arguments[-2:]
+        self.server.kill()
+        self.drag(6, 10, 0)
+        changed = self.shown()
+        self.server.start(str(self.folder / "other.json"), "--frames", "5", *scheme)
+        wait_for(lambda: "other frames now; what is not saved waits here" in self.status(), "the page to tell")
+        self.drag(7, 10, 0)
+        changed = self.shown()
+        self.picture("other")
+        wait_for(lambda: "what is not saved waits here" in self.status(), "the page to tell")
+        self.assertEqual([f for f in (self.folder / "other-annotated").rglob("*") if f.is_file()], [])
+        self.server.stop()
+        self.server.start()
+        wait_for(lambda: self.status() == "draft, saved", "the page to save what waited")
+        self.assertTrue(self.close(self.saved(), changed))
+
+    def test_a_broken_file_is_told_and_begun_anew(self):
+        file = self.file(".pts")
+        file.parent.mkdir(exist_ok=True)
+        file.write_text("{\n1 x\n}\n")
+        (file.parent / "999999.pts").write_text(file.read_text())
+        wait_for(lambda: "a number is expected" in self.status(), "the page to tell what is wrong")
+        self.server.stop()
+        self.server.start()
+        wait_for(lambda: len(self.listed()) == 6, "the page to list the frame that is none")
+        self.ready()
+        self.assertIn("a change begins the frame anew", self.status())
+        self.picture("broken")
+        self.browser.keys("PageUp")
+        wait_for(lambda: "the clip has the frames 0 to 5" in self.status(), "the page to tell what is wrong")
+        self.browser.keys("PageDown")
+        self.ready()
+        self.drag(6, 10, 0)
+        self.saved()
+        self.assertEqual(file.with_name(file.name + ".broken").read_text(), "{\n1 x\n}\n")
+        self.browser.keys("PageDown")
+        self.ready()
+        self.drag(6, 10, 0)
+        self.saved()
+
+    def test_what_cannot_be_written_waits(self):
+        blocked = self.folder / "annotated" / "clip"
+        blocked.write_text("no folder")
+        self.drag(6, 10, 0)
+        wait_for(lambda: "what is not saved waits here" in self.status(), "the page to tell")
+        self.assertIn("clip", self.status())
+        blocked.unlink()
+        wait_for(lambda: self.status() == "draft, saved", "the page to save what waited")
+        self.saved()
 
     def test_frames_are_done_one_after_the_other(self):
         frames = self.server.get("api/project")["frames"]

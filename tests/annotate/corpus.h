@@ -48,13 +48,14 @@ class CorpusTest : public MediaTest {
     Diagnostics diagnostics;
     auto project = Project::open(manifest_, options, diagnostics);
     EXPECT_TRUE(project) << diagnostics.str();
+    if (project) project->tell_manifest();
     return project;
   }
   static Shape truth(const Project& project, std::size_t frame) {
     return test::landmarks(face(project.clip(frame), project.frames()[frame].number));
   }
   static void finish(Project& project, std::size_t frame) {
-    EXPECT_TRUE(project.annotate(frame, {truth(project, frame), true}, tag_of(project.annotation(frame))).kept);
+    EXPECT_TRUE(project.annotate(frame, {truth(project, frame), true}, tag_of(project.kept(frame))).kept);
   }
 
   std::string manifest_;

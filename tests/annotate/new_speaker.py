@@ -49,7 +49,7 @@ def measure(server, frames, truth, wanted):
     """Of frames that are not annotated, how far their points to begin with are from the truth; and the time taken."""
     errors, lips, by, start = [], [], set(), time.monotonic()
     for f in wanted:
-        begun = server.get(f"api/frames/{f}")
+        begun = server.get(f"api/frames/{frames[f]['key']}")
         by.add(begun["by"])
         errors.append(rms(begun["points"], truth(frames[f])))
         lips.append(rms(begun["points"][48:], truth(frames[f])[48:]))
@@ -81,7 +81,7 @@ def main():
             if done < options.frames:
                 slip = lambda: draw.gauss(0, options.noise)
                 marked = [[x + slip(), y + slip()] for x, y in truth(frames[done])]
-                server.put(done, marked, True, server.get("api/frames")[done]["tag"])
+                server.put(frames[done]["key"], marked, True, server.get("api/frames")[done]["tag"])
     finally:
         server.stop()
     if options.train:

@@ -1,6 +1,7 @@
 #include "annotate/project.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -13,6 +14,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+namespace fs = std::filesystem;
 
 class ProjectTest : public CorpusTest {
  protected:
@@ -21,6 +23,10 @@ class ProjectTest : public CorpusTest {
       Diagnostics diagnostics;
       if (!Project::open(manifest_, options, diagnostics)) throw std::runtime_error(diagnostics.str());
     });
+  }
+  std::unique_ptr<Project> open_manifest(const std::string& name) {
+    manifest_ = path(name);
+    return open();
   }
 };
 
@@ -39,10 +45,99 @@ TEST_F(ProjectTest, TellsTheManifestWhereAnnotationsAreOnce) {
 
 TEST_F(ProjectTest, ManifestsInOneLineAndWithoutAscii) {
   write("m.json", fmt::format(R"({{"description": "Größe ✓", "rate": 25, "clips": [{}]}})", clip_json("one")));
+  manifest_ = path("m.json");
+  open();
+  EXPECT_THAT(bytes(manifest_), HasSubstr("Größe ✓\", \"rate\": 25, \"landmarks\": "
+                                          "{\"folder\":\"m-annotated\",\"scheme\":\"synthetic.json\"}, \"clips\""));
+}
+
+TEST_F(ProjectTest, AManifestKeepsItsRightsAndMayBeALink) {
+  fs::create_directories(path("elsewhere"));
+  fs::rename(manifest_, path("elsewhere/real.json"));
+  fs::create_symlink("elsewhere/real.json", manifest_);
+  fs::permissions(manifest_, fs::perms(0640));
+  open();
+  EXPECT_TRUE(fs::is_symlink(manifest_));
+  EXPECT_THAT(bytes(path("elsewhere/real.json")), HasSubstr("\"folder\":\"annotated\""));
+  EXPECT_EQ(fs::status(manifest_).permissions(), fs::perms(0640));
+  const auto told = fs::last_write_time(manifest_);
+  open();
+  EXPECT_EQ(fs::last_write_time(manifest_), told) << "nothing is said twice";
+}
+
+TEST_F(ProjectTest, WhatCannotRunChangesNoManifest) {
+  const auto before = bytes(manifest_);
+  write("annotated", "a file");
+  EXPECT_THAT(error({.scheme = path("synthetic.json")}), HasSubstr("annotated"));
+  fs::remove(path("annotated"));
+  write("one/0.png", "no picture");
+  EXPECT_THAT(error({.scheme = path("synthetic.json")}), HasSubstr("0.png"));
+  EXPECT_EQ(bytes(manifest_), before);
+}
+
+TEST_F(ProjectTest, AManifestChangedMeanwhileIsToldAsItIsNow) {
   Diagnostics diagnostics;
-  ASSERT_TRUE(Project::open(path("m.json"), {.scheme = path("synthetic.json")}, diagnostics));
-  EXPECT_THAT(bytes(path("m.json")), HasSubstr("Größe ✓\", \"rate\": 25, \"landmarks\": "
-                                               "{\"folder\":\"annotated\",\"scheme\":\"synthetic.json\"}, \"clips\""));
+  const auto project = Project::open(manifest_, {.scheme = path("synthetic.json")}, diagnostics);
+  write("manifest.json", "{\n  \"description\": \"longer\",\n" + bytes(manifest_).substr(1));
+  project->tell_manifest();
+  EXPECT_THAT(bytes(manifest_), HasSubstr("\"rate\": 25,\n \"landmarks\": {")) << "told where the text is now";
+  EXPECT_THAT(error_of([&] { project->tell_manifest(); }), HasSubstr("was changed by another program"));
+}
+
+TEST_F(ProjectTest, AFolderThatCannotBeWrittenIsToldAtOnce) {
+  write("annotated/one", "a file where a clip's folder belongs");
+  EXPECT_THAT(error({.scheme = path("synthetic.json")}), HasSubstr("annotated/one"));
+  if (geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  fs::remove(path("annotated/one"));
+  fs::permissions(path("annotated"), fs::perms(0555));
+  EXPECT_THAT(error({.scheme = path("synthetic.json")}), HasSubstr("annotated: cannot be written to: Permission"));
+}
+
+TEST_F(ProjectTest, ManifestsOfOneFolderDoNotShareAnnotations) {
+  finish(*open({.frames = 3}), 0);
+  write("other.json", fmt::format(R"({{"rate": 25, "clips": [{}]}})", clip_json("one")));
+  const auto other = open_manifest("other.json"), first = open_manifest("manifest.json");
+  EXPECT_EQ(other->folder().filename(), "other-annotated");
+  EXPECT_EQ(first->folder().filename(), "annotated");
+  EXPECT_FALSE(other->find(first->key(0))) << "what is meant for one does not reach the other";
+}
+
+TEST_F(ProjectTest, AKeyNamesTheFrameWhateverElseIsChosen) {
+  std::string key;
+  std::pair<std::string, std::int64_t> named;
+  {
+    const auto project = open({.frames = 3});
+    key = project->key(1);
+    named = {project->clip(1), project->frames()[1].number};
+  }
+  {
+    const auto project = open({.frames = 24, .seed = 99});
+    const auto found = project->find(key);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(std::pair(project->clip(*found), project->frames()[*found].number), named);
+  }
+  const auto file = fmt::format("{}/{}.png", named.first, (named.second + 1) % pictures);
+  cv::imwrite(path(file), cv::Mat(200, 200, CV_8UC3, cv::Scalar(1, 2, 3)));
+  EXPECT_FALSE(open({.frames = 24})->find(key)) << "other pictures";
+}
+
+TEST_F(ProjectTest, OneBrokenFileStopsNothingElse) {
+  {
+    const auto project = open({.frames = 6});
+    for (std::size_t f = 0; f < 3; ++f) finish(*project, f);
+    write(fmt::format("annotated/{}/{:06}.draft", project->clip(4), project->frames()[4].number), "{\n1 x\n}\n");
+    write("annotated/one/999999.pts",
+          bytes(path(fmt::format("annotated/{}/{:06}.pts", project->clip(0), project->frames()[0].number))));
+  }
+  const auto project = open({.frames = 6});
+  ASSERT_EQ(project->frames().size(), 7u);
+  EXPECT_THAT(project->kept(4).broken, HasSubstr(".draft:2: a number is expected"));
+  EXPECT_THAT(project->kept(6).broken, HasSubstr("a file of frame 999999, and the clip has the frames 0 to 11"));
+  EXPECT_THAT(error_of([&] { project->picture(6); }), HasSubstr("has no frame 999999"));
+  EXPECT_EQ(project->picture(4).cols, 200);
+  EXPECT_EQ(project->begin(5).by, Beginning::By::model);
+  EXPECT_TRUE(project->annotate(4, {truth(*project, 4), false}, tag_of(project->kept(4))).kept);
+  EXPECT_TRUE(project->kept(4).annotation);
 }
 
 TEST_F(ProjectTest, OffersTrainingClipsWithoutLandmarksOfTheirOwn) {
@@ -68,7 +163,7 @@ TEST_F(ProjectTest, TheFolderIsTheUsersChoice) {
     ASSERT_TRUE(project);
     ASSERT_EQ(project->frames().size(), 2u) << "its own annotations do not count as the clip's";
     if (run == 0) finish(*project, 0);
-    EXPECT_TRUE(project->annotation(0));
+    EXPECT_TRUE(project->kept(0).annotation);
   }
   EXPECT_TRUE(std::filesystem::exists(folder_ / "my/marks/one"));
 }
@@ -139,7 +234,7 @@ TEST_F(ProjectTest, WhatWasAnnotatedIsThereAgainAlsoIfOtherFramesAreChosen) {
   const auto project = open({.frames = 3, .seed = 99});
   std::size_t found = 0;
   for (std::size_t f = 0; f < project->frames().size(); ++f) {
-    const auto annotation = project->annotation(f);
+    const auto annotation = project->kept(f).annotation;
     found += annotation.has_value();
     if (!annotation) continue;
     EXPECT_TRUE(annotation->done);
