@@ -12,7 +12,7 @@ namespace talkgraph::annotate {
 namespace {
 
 /// Each example as a clip of one frame.
-AppearanceModel build(const std::vector<Example>& examples, const std::string& scheme) {
+AppearanceModel build(const std::vector<Example>& examples, const std::string& scheme, Context context) {
   Collected<Video> videos;
   Collected<LandmarkTrack> landmarks;
   Collected<FrameLabels> labels;
@@ -22,17 +22,15 @@ AppearanceModel build(const std::vector<Example>& examples, const std::string& s
     landmarks.add(key, LandmarkTrack{{examples[i].points}, Rational(25), scheme});
     labels.add(key, FrameLabels{{"any"}, Rational(25)});
   }
-  Context context;
   Random random;
   const ChoosePrototypes all{.per_phone = static_cast<int>(examples.size())};
   return BuildAppearance{}(all(videos, landmarks, labels, random, context), context);
 }
 
 /// A few examples leave much of a new picture unexplained: only what is no face at all is lost.
-std::optional<Shape> fit(const AppearanceModel& model, const cv::Mat& picture) {
+std::optional<Shape> fit(const AppearanceModel& model, const cv::Mat& picture, Context context) {
   TrackFace tracker;
   tracker.lost_above = 25;
-  Context context;
   auto track = tracker(model, video_from_frames({picture}, Rational(25)), context);
   if (track.lost.at(0) || !track.shapes.at(0).allFinite()) return {};
   return std::move(track.shapes[0]);
@@ -55,21 +53,21 @@ Shape place_mean(const Shape& mean, cv::Size picture) {
 }
 
 std::shared_ptr<const AppearanceModel> Beginner::model(const std::vector<Example>& examples, const std::string& state,
-                                                       const std::string& scheme) {
+                                                       const std::string& scheme, const Context& context) {
   const std::lock_guard lock(mutex_);
   if (state != state_ || !model_) {
-    model_ = std::make_shared<const AppearanceModel>(build(examples, scheme));
+    model_ = std::make_shared<const AppearanceModel>(build(examples, scheme, context));
     state_ = state;
   }
   return model_;
 }
 
 Beginning Beginner::begin(const cv::Mat& picture, const std::vector<Example>& examples, const std::string& state,
-                          const std::string& scheme) {
+                          const std::string& scheme, const Context& context) {
   if (examples.empty()) return {place_mean(mean_, picture.size()), Beginning::By::scheme};
   try {
     if (examples.size() >= enough)
-      if (auto fitted = fit(*model(examples, state, scheme), picture))
+      if (auto fitted = fit(*model(examples, state, scheme, context), picture, context))
         return {*std::move(fitted), Beginning::By::model};
   } catch (const std::runtime_error&) {
     // No model comes of these examples, flat pictures for one: a person can do without.

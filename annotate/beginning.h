@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "graph/context.h"
 #include "nodes/types/appearance_model.h"
 
 namespace talkgraph::annotate {
@@ -37,11 +38,11 @@ class Beginner {
 
   /// `state` names the examples: the model is built anew when it changes.
   Beginning begin(const cv::Mat& picture, const std::vector<Example>& examples, const std::string& state,
-                  const std::string& scheme);
+                  const std::string& scheme, const Context& context);
 
  private:
   std::shared_ptr<const AppearanceModel> model(const std::vector<Example>& examples, const std::string& state,
-                                               const std::string& scheme);
+                                               const std::string& scheme, const Context& context);
 
   const Shape mean_;
   std::mutex mutex_;

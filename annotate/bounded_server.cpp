@@ -10,10 +10,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-constexpr auto time_to_ask = std::chrono::seconds(5), time_to_take = std::chrono::seconds(60);
+constexpr auto time_to_ask = std::chrono::seconds(3), time_to_take = std::chrono::seconds(60);
 constexpr milliseconds look_for_stop(50);
 /// Connections that say nothing occupy one each.
-constexpr std::size_t threads = 32;
+constexpr std::size_t threads = 64;
 
 class Connection final : public httplib::Stream {
  public:

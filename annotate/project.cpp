@@ -199,42 +199,54 @@ std::optional<std::size_t> Project::find(const std::string& key) const {
   return found == keys_.end() ? std::nullopt : std::optional<std::size_t>(found - keys_.begin());
 }
 
-std::int64_t Project::length(std::size_t frame) const { return clips_[frames_[frame].clip].video().source->frames(); }
-
-void Project::read_clip(std::size_t clip) {
-  const Video video = clips_[clip].video();
-  std::set<std::int64_t> wanted;
-  for (const auto& frame : frames_)
-    if (frame.clip == clip && frame.number < video.source->frames()) wanted.insert(frame.number);
-  const auto reader = video.source->open();
-  cv::Mat picture;
-  for (std::int64_t n = 0; n <= *wanted.rbegin() && reader->next(picture); ++n)
-    if (wanted.contains(n)) pictures_[{clip, n}] = picture.clone();
+bool Project::has_frame(std::size_t clip, std::int64_t from, std::int64_t to) const {
+  return std::any_of(frames_.begin(), frames_.end(), [&](const Frame& frame) {
+    return frame.clip == clip && frame.number >= from && frame.number < to;
+  });
 }
 
-cv::Mat Project::picture(std::size_t frame) {
-  const std::lock_guard lock(pictures_mutex_);
-  const std::pair key(frames_[frame].clip, frames_[frame].number);
-  if (!pictures_.contains(key) && key.second < length(frame)) read_clip(key.first);
-  const auto found = pictures_.find(key);
-  if (found == pictures_.end())
-    throw std::runtime_error(fmt::format("{}: has no frame {}", clips_[key.first].video().source->name(), key.second));
+void Project::read(std::size_t frame, Film& film, const Context& context) {
+  const auto [clip, number, phone] = frames_[frame];
+  const auto length = source(frame).frames();
+  if (film.next > number || number >= length) return;
+  if (!film.reader) film.reader = source(frame).open();
+  for (cv::Mat picture; film.next <= number && film.reader->next(picture); ++film.next) {
+    context.check_cancelled();
+    if (has_frame(clip, film.next, film.next + 1)) film.pictures[film.next] = picture.clone();
+  }
+  if (!has_frame(clip, film.next, length)) film.reader.reset();
+}
+
+cv::Mat Project::picture(std::size_t frame, const Context& context) {
+  const std::lock_guard lock(films_mutex_);
+  auto& film = films_[frames_[frame].clip];
+  const auto number = frames_[frame].number;
+  try {
+    read(frame, film, context);
+  } catch (const std::runtime_error&) {
+    film.reader.reset();
+    film.next = 0;
+    throw;
+  }
+  const auto found = film.pictures.find(number);
+  if (found == film.pictures.end())
+    throw std::runtime_error(fmt::format("{}: has no frame {}", source(frame).name(), number));
   return found->second;
 }
 
 Kept Project::kept(std::size_t frame) const {
-  const auto number = frames_[frame].number;
-  if (number >= length(frame))
+  const auto number = frames_[frame].number, length = source(frame).frames();
+  if (number >= length)
     return {{},
             fmt::format("{}: there is a file of frame {}, and the clip has the frames 0 to {}; remove the file",
-                        (folder() / clip(frame)).string(), number, length(frame) - 1)};
+                        (folder() / clip(frame)).string(), number, length - 1)};
   return annotations_.read(clip(frame), number);
 }
 
 Annotations::Written Project::annotate(std::size_t frame, const Annotation& next, const std::string& tag) {
   if (next.points.rows() != scheme_.points())
     throw std::invalid_argument(fmt::format("{} points are needed, got {}", scheme_.points(), next.points.rows()));
-  const cv::Size size = picture(frame).size();
+  const cv::Size size = source(frame).size();
   const Eigen::RowVector2d limit(size.width, size.height);
   for (Eigen::Index p = 0; p < next.points.rows(); ++p) {
     const Eigen::RowVector2d place = next.points.row(p);
@@ -246,16 +258,16 @@ Annotations::Written Project::annotate(std::size_t frame, const Annotation& next
   return annotations_.write(clip(frame), frames_[frame].number, next, tag);
 }
 
-Beginning Project::begin(std::size_t frame) {
+Beginning Project::begin(std::size_t frame, const Context& context) {
   std::vector<Example> examples;
   std::string state;
   for (std::size_t other = 0; other < frames_.size(); ++other) {
     const auto known = other == frame ? Kept() : kept(other);
     if (!known.annotation || !known.annotation->done) continue;
-    examples.push_back({picture(other), known.annotation->points});
+    examples.push_back({picture(other, context), known.annotation->points});
     state += tag_of(known) + " ";
   }
-  return beginner_.begin(picture(frame), examples, state, scheme_name_);
+  return beginner_.begin(picture(frame, context), examples, state, scheme_name_, context);
 }
 
 }  // namespace talkgraph::annotate

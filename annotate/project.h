@@ -55,21 +55,29 @@ class Project {
   const std::string& key(std::size_t frame) const { return keys_[frame]; }
   std::optional<std::size_t> find(const std::string& key) const;
 
-  /// Decoded when first asked for, with all others of its clip. Throws std::runtime_error that names the video.
-  cv::Mat picture(std::size_t frame);
+  /// Decoded when first asked for, with those of its clip before it. Throws std::runtime_error that names the video.
+  cv::Mat picture(std::size_t frame, const Context& context = {});
   /// A frame of which there is a file although its clip is shorter is broken.
   Kept kept(std::size_t frame) const;
   /// Throws std::invalid_argument unless the points are the scheme's in number, near the picture, and, for a frame that
   /// is done, in it: nothing is learnt from a face that leaves the picture.
   Annotations::Written annotate(std::size_t frame, const Annotation& next, const std::string& tag);
   /// Points to begin with; never the frame's own annotation.
-  Beginning begin(std::size_t frame);
+  Beginning begin(std::size_t frame, const Context& context = {});
 
  private:
   struct Destination;
+  /// How far a clip has been read, and the pictures of its frames so far.
+  struct Film {
+    std::unique_ptr<VideoSource::Reader> reader;
+    std::int64_t next = 0;
+    std::map<std::int64_t, cv::Mat> pictures;
+  };
   Project(std::string manifest, std::vector<Clip> clips, Destination destination, const ProjectOptions& options);
-  std::int64_t length(std::size_t frame) const;
-  void read_clip(std::size_t clip);
+  const VideoSource& source(std::size_t frame) const { return *clips_[frames_[frame].clip].video().source; }
+  /// Whether one of a clip's frames `from` to `to` - 1 is to be annotated.
+  bool has_frame(std::size_t clip, std::int64_t from, std::int64_t to) const;
+  void read(std::size_t frame, Film& film, const Context& context);
 
   const std::string manifest_;
   const std::vector<Clip> clips_;
@@ -81,8 +89,8 @@ class Project {
   std::vector<Frame> frames_;
   std::vector<std::string> keys_;
   Beginner beginner_;
-  std::mutex pictures_mutex_;
-  std::map<std::pair<std::size_t, std::int64_t>, cv::Mat> pictures_;  ///< by clip and number
+  std::mutex films_mutex_;
+  std::map<std::size_t, Film> films_;  ///< by clip
 };
 
 }  // namespace talkgraph::annotate

@@ -170,7 +170,7 @@ struct Server::State {
   Json read(std::size_t frame) const {
     const auto kept = project.kept(frame);
     Json json = to_json(kept);
-    if (!kept.annotation) json.update(to_json(project.begin(frame)));
+    if (!kept.annotation) json.update(to_json(project.begin(frame, context)));
     return json;
   }
 
@@ -184,7 +184,7 @@ struct Server::State {
 
   void send_picture(std::size_t frame, Response& response) const {
     std::vector<std::uint8_t> png;
-    codec<decltype(codec_encode_png)>("codec_encode_png")(project.picture(frame), png);
+    codec<decltype(codec_encode_png)>("codec_encode_png")(project.picture(frame, context), png);
     response.set_content(reinterpret_cast<const char*>(png.data()), png.size(), "image/png");
   }
 
@@ -199,8 +199,9 @@ struct Server::State {
     server.Get("/api/frames", [this](const Request&, Response& out) { answer(out, states()); });
     const std::string frame = "/api/frames/([0-9a-f]{32})";
     server.Get(frame, [this](const Request& in, Response& out) { answer(out, read(frame_of(in))); });
-    server.Get(frame + "/begin",
-               [this](const Request& in, Response& out) { answer(out, to_json(project.begin(frame_of(in)))); });
+    server.Get(frame + "/begin", [this](const Request& in, Response& out) {
+      answer(out, to_json(project.begin(frame_of(in), context)));
+    });
     server.Get(frame + "/picture", [this](const Request& in, Response& out) { send_picture(frame_of(in), out); });
     server.Put(frame, [this](const Request& in, Response& out) { write(in, out); });
   }
@@ -229,6 +230,7 @@ struct Server::State {
   }
 
   Project& project;
+  Context context;
   BoundedServer server{longest_request};
 };
 
@@ -245,6 +247,9 @@ Server::~Server() = default;
 
 std::string Server::url() const { return fmt::format("http://{}:{}/", address, port_); }
 
-void Server::run(const std::atomic<bool>& stop) { state_->server.run(stop); }
+void Server::run(const std::atomic<bool>& stop) {
+  state_->context.cancel = &stop;
+  state_->server.run(stop);
+}
 
 }  // namespace talkgraph::annotate

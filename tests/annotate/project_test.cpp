@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <opencv2/imgcodecs.hpp>
 
 #include "nodes/corpus/manifest.h"
@@ -119,6 +120,21 @@ TEST_F(ProjectTest, AKeyNamesTheFrameWhateverElseIsChosen) {
   const auto file = fmt::format("{}/{}.png", named.first, (named.second + 1) % pictures);
   cv::imwrite(path(file), cv::Mat(200, 200, CV_8UC3, cv::Scalar(1, 2, 3)));
   EXPECT_FALSE(open({.frames = 24})->find(key)) << "other pictures";
+}
+
+TEST_F(ProjectTest, PicturesAreReadOnceAsFarAsNeededAndReadingMayBeGivenUp) {
+  const auto project = open({.frames = 24});
+  std::atomic<bool> cancelled = true;
+  Context context;
+  context.cancel = &cancelled;
+  EXPECT_THROW(project->picture(5, context), Cancelled);
+  cancelled = false;
+  for (std::size_t f = project->frames().size(); f-- > 0;) {
+    const auto picture = test::draw(face(project->clip(f), project->frames()[f].number));
+    EXPECT_EQ(cv::norm(project->picture(f, context), picture, cv::NORM_INF), 0) << f;
+  }
+  fs::remove_all(path("one"));
+  EXPECT_FALSE(project->picture(0).empty());
 }
 
 TEST_F(ProjectTest, OneBrokenFileStopsNothingElse) {
