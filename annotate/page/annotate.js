@@ -11,7 +11,7 @@ let view = { scale: 1, x: 0, y: 0 }, size = null;  // a point p is drawn at scal
 let drag = null;
 let trouble = "", note = "";  // trouble: why the server takes no changes
 const gone = "the server does not answer", moved_on = "the server has other frames now";
-const remedies = { [gone]: ": start it again", [moved_on]: ": start it as it was before, or reload to give it up" };
+const remedies = { [gone]: ": start it again", [moved_on]: ": start it as it was before, or reload" };
 
 // ---------------------------------------------------------------- talking to the server
 
@@ -74,6 +74,7 @@ async function send(frame) {
     await sleep(500);
   }
   frame.saving = false;
+  remember(frame);
   show();
 }
 
@@ -154,15 +155,28 @@ function keep_step(frame) {
   frame.future = [];
 }
 
+/** What a reload shall find again: steps, and what is not saved. */
+function remember(frame) {
+  const { past, future, points, done, tag } = frame;
+  const waits = frame.unsaved || frame.saving ? { points, done, tag } : null;
+  try {
+    sessionStorage.setItem(frame.key, JSON.stringify({ past, future, waits }));
+  } catch {
+    // No room: they end with the page.
+  }
+}
+
+function recall(frame) {
+  const { waits, ...steps } = JSON.parse(sessionStorage.getItem(frame.key) ?? "{}");
+  Object.assign(frame, steps, waits);
+  if (waits) save(frame);
+}
+
 function edited(frame) {
   frame.edits++;
   note = "";
-  try {
-    sessionStorage.setItem(frame.key, JSON.stringify({ past: frame.past, future: frame.future }));
-  } catch {
-    // No room: the steps end with the page.
-  }
   save(frame);
+  remember(frame);
   show();
 }
 
@@ -443,7 +457,7 @@ const beginnings = {
 
 function state_text() {
   if (current?.state === "new") return beginnings[current.by] ?? "";
-  if (current?.state === "broken") return `${current.reason}${ready() ? "; a change begins the frame anew" : ""}`;
+  if (current?.state === "broken") return `${current.reason}${ready() ? "; a change begins the frame anew and puts the file aside" : ""}`;
   return current?.done ? "done, saved" : "draft, saved";
 }
 
@@ -550,12 +564,12 @@ async function main() {
     ...frame, index, state: "new", tag: "none", done: false,
     points: null, edits: 0, unsaved: false, saving: false, settled: null, sent: [], past: [], future: [],
   }));
-  for (const frame of frames) Object.assign(frame, JSON.parse(sessionStorage.getItem(frame.key) ?? "{}"));
   await follow(await get("api/frames"));
   document.title = `${project.manifest} – talkgraph annotate`;
   make_marks();
   make_list();
   listen();
+  frames.forEach(recall);
   const wanted = frames.findIndex((frame) => frame.key === location.hash.slice(1));
   await open_frame(wanted >= 0 ? wanted : Math.max(0, frames.findIndex((frame) => !frame.done)));
   watch();

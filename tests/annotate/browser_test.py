@@ -319,9 +319,12 @@ class AnnotateTest(unittest.TestCase):
         self.picture("other")
         wait_for(lambda: "what is not saved waits here" in self.status(), "the page to tell")
         self.assertEqual([f for f in (self.folder / "other-annotated").rglob("*") if f.is_file()], [])
+        self.browser.reload()
+        self.ready()
+        self.assertIn("mean shape", self.status(), "a reload takes the new frames")
         self.server.stop()
         self.server.start()
-        wait_for(lambda: self.status() == "draft, saved", "the page to save what waited")
+        wait_for(lambda: self.status() == "draft, saved", "what waited to be saved, once its frames are there again")
         self.assertTrue(self.close(self.saved(), changed))
 
     def test_a_broken_file_is_told_and_begun_anew(self):

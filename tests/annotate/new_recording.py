@@ -1,6 +1,6 @@
 """The path of a person with a new recording, driven through the page in a real browser and timed.
 
-new_recording.py path/to/talkgraph GRID folder [--clips 24] [--frames 20] [--train]
+new_recording.py path/to/talkgraph GRID folder [--clips 24] [--frames 20] [--train]    (the folder is made)
 
 Validation clips of a folder of the GRID corpus (docs/grid.md) stand for the recording: videos with transcripts, nothing
 else. The hand, which knows the landmarks that came with them, drags the whole face, then groups, then points, until
@@ -12,6 +12,7 @@ import csv
 import json
 import math
 import pathlib
+import resource
 import shutil
 import statistics
 import subprocess
@@ -19,6 +20,7 @@ import tempfile
 import time
 
 from browser import Browser, Server, wait_for
+from new_speaker import read_points, rms
 
 PIPELINES = pathlib.Path(__file__).parents[2] / "pipelines"
 
@@ -32,6 +34,7 @@ def record(grid, folder, clips):
 
 
 def landmarks(grid, clip):
+    """Of every frame, as they came with a clip."""
     with open(grid / "landmarks" / f"{clip}.csv") as file:
         rows = [[float(value) for value in row[1:]] for row in list(csv.reader(file))[1:]]
     return [list(zip(row[::2], row[1::2])) for row in rows]
@@ -94,7 +97,7 @@ class Hand:
         self.place_face(truth)
         self.place_groups(truth)
         self.place_points(truth)
-        return math.sqrt(statistics.fmean(math.dist(p, q) ** 2 for p, q in zip(self.shown(), truth)))
+        return rms(self.shown(), truth)
 
 
 def annotate(program, manifest, grid, frames, within):
@@ -131,10 +134,23 @@ def annotate(program, manifest, grid, frames, within):
         profile.cleanup()
 
 
-def timed(what, *command):
-    start = time.monotonic()
+def timed(*command):
+    """Of the processor: what other programs of the computer do counts for the wall clock only."""
+    start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run([str(part) for part in command], check=True)
-    print(f"{what}: {time.monotonic() - start:.1f} s", flush=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    print(f"{' '.join(map(str, command[1:3]))}: {time.monotonic() - start:.1f} s, {processor:.1f} s of processor time",
+          flush=True)
+
+
+def compare(grid, tracked):
+    errors = []
+    for clip in tracked.iterdir():
+        truth = landmarks(grid, clip.name)
+        errors += [rms(read_points(file), truth[int(file.stem)]) for file in clip.glob("*.pts")]
+    print(f"followed: {len(errors)} frames, from the landmarks that came with the clips "
+          f"{statistics.median(errors):.2f} px (median), {max(errors):.2f} px (worst)")
 
 
 def main():
@@ -145,17 +161,19 @@ def main():
     options.add_argument("--clips", type=int, default=24)
     options.add_argument("--frames", type=int, default=20)
     options.add_argument("--within", type=float, default=1.5, help="pixels from the landmarks that are near enough")
-    options.add_argument("--train", action="store_true", help="run pipelines/own.json")
+    options.add_argument("--train", action="store_true", help="run pipelines/track-own.json and own.json")
     options = options.parse_args()
     record(options.grid, options.folder, options.clips)
     manifest = options.folder / "manifest.json"
-    timed("corpus new", options.program, "corpus", "new", options.folder)
-    timed("corpus check", options.program, "corpus", "check", manifest)
+    timed(options.program, "corpus", "new", options.folder)
+    timed(options.program, "corpus", "check", manifest)
     annotate(options.program, manifest, options.grid, options.frames, options.within)
-    timed("corpus check again", options.program, "corpus", "check", manifest)
+    timed(options.program, "corpus", "check", manifest)
+    for name in ("track-own", "own") if options.train else ():
+        timed(options.program, "run", PIPELINES / f"{name}.json", "-q", "--set", f"manifest={manifest}", "-o",
+              options.folder / name)
     if options.train:
-        timed("own.json", options.program, "run", PIPELINES / "own.json", "--set", f"manifest={manifest}", "-o",
-              options.folder / "run")
+        compare(options.grid, options.folder / "track-own" / "landmarks")
 
 
 if __name__ == "__main__":
