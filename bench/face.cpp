@@ -21,7 +21,6 @@ namespace {
 
 constexpr int trained_on = 184, tested_on = 60, tracked = 120;
 constexpr double start_shift = 4.5, start_scale = 0.029, start_turn = 0.034;  // standard deviations
-constexpr double start_reach = 0.1;                                           // half widths
 
 constexpr FitMethod methods[] = {FitMethod::fixed_jacobian, FitMethod::inverse_compositional};
 
@@ -120,7 +119,7 @@ void compare_fits(const AppearanceModel& model, const std::vector<Test>& tests, 
             Fit start;
             start.c = Eigen::VectorXd::Zero(model.modes());
             start.pose = test.start;
-            const Fit found = fitter.coarse_to_fine(pyramid, start, {.reach = start_reach});
+            const Fit found = fitter.coarse_to_fine(pyramid, start, {.reach = TrackFace{}.reach});
             return transform(found.pose, model.shape(found.c));
           }));
   }

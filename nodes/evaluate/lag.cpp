@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace talkgraph {
 namespace {
 
+/// Over the places where the first has a value.
 double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  const Eigen::VectorXd x = a.array() - a.mean(), y = b.array() - b.mean();
+  std::vector<Eigen::Index> there;
+  for (Eigen::Index t = 0; t < a.size(); ++t)
+    if (!std::isnan(a(t))) there.push_back(t);
+  if (there.size() < 3) return NAN;
+  const Eigen::VectorXd x = a(there).array() - a(there).mean(), y = b(there).array() - b(there).mean();
   const double product = x.norm() * y.norm();
   return product > 1e-9 ? x.dot(y) / product : NAN;
 }

@@ -15,8 +15,8 @@ Eigen::VectorXd point_distance(const LandmarkTrack& landmarks, const std::string
   Eigen::VectorXd out(static_cast<Eigen::Index>(landmarks.frames.size()));
   for (Eigen::Index t = 0; t < out.size(); ++t) {
     const Shape& shape = landmarks.frames[static_cast<std::size_t>(t)];
-    if (shape.rows() != scheme.points() || !shape.allFinite())
-      throw std::runtime_error(fmt::format("frame {} has no landmarks, or not all", t));
+    if (shape.rows() != scheme.points())
+      throw std::runtime_error(fmt::format("frame {} has {} points, its scheme {}", t, shape.rows(), scheme.points()));
     out[t] = (shape.row(from) - shape.row(to)).norm();
   }
   return out;

@@ -24,7 +24,7 @@ std::optional<Scores> MouthLag::operator()(const LandmarkTrack& landmarks, const
 }
 
 void describe(Description<MouthLag>& d) {
-  d.type("evaluate.mouth_lag").summary("lag between the opening of the mouth and the sound");
+  d.type("evaluate.mouth_lag").version(2).summary("lag between the opening of the mouth and the sound");
   d.input("landmarks", "of the face, recorded or synthesised")
       .input("audio", "the speech")
       .output("scores",

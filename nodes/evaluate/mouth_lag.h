@@ -12,7 +12,7 @@ namespace talkgraph {
 ///   lag          shift of the highest correlation, frames; above 0: the mouth is late
 ///   correlation  at that shift
 ///   in_time      correlation without a shift
-/// Nothing is given where either does not vary.
+/// Frames without landmarks do not count; nothing is given where either does not vary.
 struct MouthLag {
   int max_lag = 6;
   std::string upper = "inner_top";     ///< point in the middle of the inner upper lip, by its name in the scheme

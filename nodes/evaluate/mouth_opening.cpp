@@ -1,12 +1,22 @@
 #include "nodes/evaluate/mouth_opening.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "nodes/evaluate/lips.h"
 
 namespace talkgraph {
 namespace {
+
+/// Those that are there.
+Eigen::VectorXd finite(const Eigen::VectorXd& values) {
+  std::vector<Eigen::Index> there;
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    if (std::isfinite(values(i))) there.push_back(i);
+  return values(there);
+}
 
 class Mean {
  public:
@@ -31,7 +41,9 @@ std::optional<Scores> MouthOpening::operator()(const LandmarkTrack& landmarks, c
                              std::to_string(length));
   const auto frames = std::min<Eigen::Index>(length, static_cast<Eigen::Index>(landmarks.frames.size()));
   if (frames == 0) return {};
-  const double width = point_distance(landmarks, left, right).mean();
+  const Eigen::VectorXd widths = finite(point_distance(landmarks, left, right));
+  if (widths.size() == 0) return {};
+  const double width = widths.mean();
   if (!(width > 0)) throw std::runtime_error("the corners of the mouth are one point in every frame");
   const Eigen::VectorXd gap = point_distance(landmarks, upper, lower) / width;
   const auto among = [](const std::vector<std::string>& phones, const std::string& phone) {
@@ -41,7 +53,8 @@ std::optional<Scores> MouthOpening::operator()(const LandmarkTrack& landmarks, c
   for (Eigen::Index from = 0, to = 0; from < frames; from = to) {
     const auto& phone = labels.labels[static_cast<std::size_t>(from)];
     while (to < frames && labels.labels[static_cast<std::size_t>(to)] == phone) ++to;
-    const auto run = gap.segment(from, to - from);
+    const Eigen::VectorXd run = finite(gap.segment(from, to - from));
+    if (run.size() == 0) continue;
     if (among(closed, phone)) closed_gap.add(run.minCoeff());
     if (among(open, phone)) open_gap.add(run.maxCoeff());
     if (phone == "sil") pause_gap.add(run.mean(), static_cast<double>(run.size()));
@@ -55,7 +68,9 @@ std::optional<Scores> MouthOpening::operator()(const LandmarkTrack& landmarks, c
 }
 
 void describe(Description<MouthOpening>& d) {
-  d.type("evaluate.mouth_opening").summary("how far the lips part on closed phones, open phones and in pauses");
+  d.type("evaluate.mouth_opening")
+      .version(2)
+      .summary("how far the lips part on closed phones, open phones and in pauses");
   d.input("landmarks", "of the face, recorded or synthesised")
       .input("labels", "phone of every frame")
       .output("scores", "closed, open, pause: gap between the lips as a share of the mouth's width");

@@ -12,10 +12,9 @@ namespace talkgraph {
 ///   closed  smallest gap within a phone of `closed`, averaged over those phones
 ///   open    largest gap within a phone of `open`, averaged over those phones
 ///   pause   average gap of the frames labelled "sil"
-/// A score is left out where its phones do not occur; nothing is given for a
+/// Frames without landmarks do not count. A score is left out where its phones do not occur; nothing is given for a
 /// clip with none of them. Throws std::runtime_error if lengths differ by more
-/// than two frames, the scheme of the points is unknown or lacks a point, a frame has no landmarks, or the mouth has no
-/// width.
+/// than two frames, the scheme of the points is unknown or lacks a point, or the mouth has no width.
 struct MouthOpening {
   std::vector<std::string> closed = {"p", "b", "m"};
   std::vector<std::string> open = {"aa", "ae", "ah", "ao", "aw", "ay"};

@@ -183,10 +183,12 @@ std::optional<Scores> ComparePictures::operator()(const Video& recorded, const V
   Comparison comparison(settings);
   const auto left = recorded.source->open(), right = drawn.source->open();
   Frame now, before;
-  bool counts = false, any = false;
+  bool counts = false;
+  std::size_t compared = 0, seen = 0;
   for (std::size_t t = 0; t < landmarks.frames.size(); ++t) {
     now = {};
     if (!left->next(now.recorded) || !right->next(now.drawn)) break;
+    ++seen;
     const bool counted = counts;
     const Shape& shape = landmarks.frames[t];
     counts = !recorded.is_damaged(static_cast<std::int64_t>(t)) && shape.rows() > 0 && shape.allFinite();
@@ -195,20 +197,23 @@ std::optional<Scores> ComparePictures::operator()(const Video& recorded, const V
     now.drawn_grey = grey(now.drawn);
     comparison.add(now, counted ? &before : nullptr, shape);
     before = now;
-    any = true;
+    ++compared;
   }
-  if (!any) return {};
-  return comparison.scores();
+  if (compared == 0) return {};
+  Scores scores = comparison.scores();
+  scores.values["left_out"] = static_cast<double>(seen - compared);
+  return scores;
 }
 
 void describe(Description<ComparePictures>& d) {
   d.type("evaluate.pictures")
+      .version(2)
       .summary("how near a drawn face comes to the recorded one: likeness, sharpness, jumps, seam");
   d.source("SSIM: Wang, Bovik, Sheikh & Simoncelli 2004").stored();
   d.input("recorded", "the clip")
       .input("drawn", "the same with a face drawn on it")
-      .input("landmarks", "of the recorded face")
-      .output("scores", "psnr_face, psnr_mouth, ssim_face, ssim_mouth, sharpness, jumps, seam");
+      .input("landmarks", "of the recorded face; frames without do not count")
+      .output("scores", "psnr_face, psnr_mouth, ssim_face, ssim_mouth, sharpness, jumps, seam, left_out");
   d.param("mouth", &ComparePictures::mouth)
       .at_least(0)
       .doc("landmarks around the lips; empty: outer lips of the point scheme");

@@ -6,6 +6,15 @@
 
 namespace talkgraph {
 
+GoodRun longest_good_run(const FaceTrack& track) {
+  GoodRun best, now;
+  for (std::size_t t = 0; t < track.lost.size(); ++t) {
+    now = track.lost[t] ? GoodRun{static_cast<std::int64_t>(t) + 1, 0} : GoodRun{now.first, now.length + 1};
+    if (now.length > best.length) best = now;
+  }
+  return best;
+}
+
 BaseClip MakeBaseClip::operator()(const Video& video, const FaceTrack& track) const {
   if (video.source->frames() != static_cast<std::int64_t>(track.shapes.size()))
     throw std::runtime_error(fmt::format("{} has {} frames, its face track has {}", video.source->name(),

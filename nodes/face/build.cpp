@@ -95,8 +95,7 @@ Eigen::MatrixXf texture_change(std::vector<Pyramid>& pictures, const Aligned& al
 void combine(AppearanceModel& model, const Pca& shapes, const Pca& textures, const Eigen::MatrixXd& shape_columns,
              const Eigen::MatrixXd& texture_columns, double retain, Eigen::MatrixXd& c) {
   const auto ks = shapes.variances.size(), kg = textures.variances.size();
-  const double shape_total = shapes.variances.sum(), texture_total = textures.variances.sum();
-  model.shape_weight = shape_total > 0 && texture_total > 0 ? std::sqrt(texture_total / shape_total) : 1;
+  model.shape_weight = shapes.total > 0 && textures.total > 0 ? std::sqrt(textures.total / shapes.total) : 1;
   Eigen::MatrixXd b(ks + kg, shape_columns.cols());
   b.topRows(ks) = model.shape_weight * shapes.modes.transpose() * (shape_columns.colwise() - shapes.mean);
   b.bottomRows(kg) = textures.modes.transpose() * (texture_columns.colwise() - textures.mean);
@@ -185,7 +184,7 @@ AppearanceModel BuildAppearance::operator()(const Prototypes& prototypes, Contex
 }
 
 void describe(Description<BuildAppearance>& d) {
-  d.type("face.build").version(2).summary("builds an active appearance model from pictures with landmarks");
+  d.type("face.build").version(3).summary("builds an active appearance model from pictures with landmarks");
   d.source("Thesis §3.1, §3.4, Eqns 3.11-3.21; docs/method.md §2").stored();
   d.input("prototypes", "pictures with landmarks").output("model", "shape, texture and their combined modes");
   d.param("width", &BuildAppearance::width)

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "nodes/face/base_clip.h"
 #include "nodes/face/draw.h"
 #include "nodes/face/geometry.h"
 #include "nodes/face/look.h"
@@ -182,19 +183,6 @@ class Painter {
   std::optional<Membrane> membrane_;  ///< over what is changed
 };
 
-struct Run {
-  std::int64_t first = 0, length = 0;
-};
-
-Run longest_good_run(const FaceTrack& track) {
-  Run best, now;
-  for (std::size_t t = 0; t < track.lost.size(); ++t) {
-    now = track.lost[t] ? Run{static_cast<std::int64_t>(t) + 1, 0} : Run{now.first, now.length + 1};
-    if (now.length > best.length) best = now;
-  }
-  return best;
-}
-
 /// 0, 1 ... n-1, n-2 ... 1, 0, 1 ...
 std::int64_t back_and_forth(std::int64_t i, std::int64_t n) {
   if (n == 1) return 0;
@@ -208,7 +196,7 @@ struct Plan {
   std::shared_ptr<const Looks> looks;
   Painter painter;
   BaseClip base;
-  Run run;
+  GoodRun run;
   bool loops = false;  ///< the run is too short, so it goes back and forth
   std::string settings;
 

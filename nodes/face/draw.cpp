@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <cstring>
 #include <opencv2/core/hal/intrin.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "nodes/face/geometry.h"
+#include "nodes/face/sampling.h"
 
 namespace talkgraph {
 namespace {
@@ -111,6 +113,19 @@ void write_row(cv::Vec3b* row, int first, int last, Value value) {
   std::memcpy(row[last].val, &pixel, 3);
 }
 
+/// The raster with its face; pixels around the face have the mean of their neighbours inside it.
+cv::Mat padded(const Raster& raster, const Eigen::VectorXf& texture) {
+  const cv::Mat picture = raster_picture(raster, texture),
+                inside = raster_picture(raster, Eigen::VectorXf::Ones(texture.size()));
+  cv::Mat sum, weight, around, mask;
+  cv::boxFilter(picture, sum, CV_32F, {5, 5});
+  cv::boxFilter(inside, weight, CV_32F, {5, 5});
+  cv::divide(sum, cv::max(weight, 1e-6), around);
+  cv::extractChannel(inside, mask, 0);
+  picture.copyTo(around, mask > 0);
+  return around;
+}
+
 }  // namespace
 
 void draw_map(cv::Mat& map, const Shape& to, const Shape& from, const Triangles& triangles) {
@@ -147,6 +162,18 @@ void draw_triangles(cv::Mat& picture, const Shape& to, const cv::Mat& texture, c
         write_row(row, first, last, [&](int x) { return source.at(source.column(u(x)), source.row(v(x))); });
     });
   }
+}
+
+cv::Mat draw_texture(const AppearanceModel& model, const Eigen::VectorXf& texture, const Shape& shape,
+                     cv::Mat& picture) {
+  const auto& raster = model.levels.at(0).raster;
+  cv::Mat map = empty_map(picture.size()), face, mask;
+  draw_map(map, shape, raster.points, model.triangles);
+  cv::remap(padded(raster, texture), face, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  face.convertTo(face, CV_8UC3);
+  cv::inRange(map, cv::Scalar(-50, -50), cv::Scalar(1e9, 1e9), mask);
+  face.copyTo(picture, mask);
+  return mask;
 }
 
 cv::Mat identity_map(cv::Size size) {

@@ -15,6 +15,11 @@ void draw_map(cv::Mat& map, const Shape& to, const Shape& from, const Triangles&
 void draw_triangles(cv::Mat& picture, const Shape& to, const cv::Mat& texture, const Shape& from,
                     const Triangles& triangles);
 
+/// Draws a texture of grey levels in the triangles of `shape` on an 8-bit BGR picture, bilinear, without what lies
+/// beyond the face's edge; gives the mask of what was drawn.
+cv::Mat draw_texture(const AppearanceModel& model, const Eigen::VectorXf& texture, const Shape& shape,
+                     cv::Mat& picture);
+
 /// For a picture of `size`: every pixel maps to itself.
 cv::Mat identity_map(cv::Size size);
 /// For a picture of `size`: every pixel maps outside of any picture.

@@ -69,6 +69,15 @@ std::vector<double> blinks(double seconds, const MakeEyes& eyes, Random& random)
   return at;
 }
 
+/// The values of a track at a time: between those of the frames around it, held beyond its ends.
+Eigen::RowVectorXd at_time(const Track& track, double seconds) {
+  const double last = static_cast<double>(track.frames() - 1);
+  const double frame = std::clamp((seconds - track.start) * track.rate.value(), 0.0, last);
+  const auto before = static_cast<Eigen::Index>(frame), after = std::min(before + 1, track.frames() - 1);
+  const double share = frame - static_cast<double>(before);
+  return (1 - share) * track.values.row(before) + share * track.values.row(after);
+}
+
 }  // namespace
 
 double lid_closure(double since, double duration) {
@@ -88,7 +97,7 @@ Eyes MakeEyes::operator()(const AppearanceModel& model, const Track& parameters,
     if (!given || given->frames() == 0)
       throw std::runtime_error("there are no eyes: wire their parameters to \"given\"");
     check_dimension(model, *given);
-    for (Eigen::Index t = 0; t < c.rows(); ++t) c.row(t) = given->values.row(std::min(t, given->frames() - 1));
+    for (Eigen::Index t = 0; t < c.rows(); ++t) c.row(t) = at_time(*given, parameters.time(t));
     return out;
   }
   c.setZero();
@@ -104,7 +113,7 @@ Eyes MakeEyes::operator()(const AppearanceModel& model, const Track& parameters,
 
 void describe(Description<MakeEyes>& d) {
   d.type("face.eyes")
-      .version(1)
+      .version(2)
       .summary("eyes for a face that is drawn: still, blinking, or those of other parameters");
   d.source("Thesis §6.3.5; docs/method.md §2");
   d.input("model", "of the face")

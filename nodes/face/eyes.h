@@ -18,11 +18,12 @@ inline constexpr EnumNames<EyeSource, 4> enum_names<EyeSource>{{{EyeSource::base
 
 /// Eyes for a face of appearance parameters: as they are without this node (base: those of the frames drawn upon),
 /// those of the mean parameters, the same with lids that blink now and then, or those of other parameters (the recorded
-/// ones, say), which are held at their last frame if they are shorter. Shut eyes are the likeliest ones of the
-/// model, given that the lids are `reach` standard deviations nearer to each other than on average, or meet before.
-/// Blinks come `interval` apart on average, no nearer than half of it, and the same seed gives the same ones. Thesis
-/// §6.3.5. Throws std::runtime_error if parameters were made with another model, `given` is asked for and not there or
-/// without a frame, the model lacks a point, or blinking is asked of a model whose lids never move.
+/// ones, say) at the same time, whatever their rate, held at their ends where they are shorter. Shut eyes are the
+/// likeliest ones of the model, given that the lids are `reach` standard deviations nearer to each other than on
+/// average, or meet before. Blinks come `interval` apart on average, no nearer than half of it, and the same seed gives
+/// the same ones. Thesis §6.3.5. Throws std::runtime_error if parameters were made with another model, `given` is asked
+/// for and not there or without a frame, the model lacks a point, or blinking is asked of a model whose lids never
+/// move.
 struct MakeEyes {
   EyeSource source = EyeSource::base;
   double interval = 3.5;  ///< between blinks, seconds

@@ -84,6 +84,11 @@ Pose compose(const Pose& outer, const Pose& inner) {
           b * inner.dx + a * inner.dy + outer.dy};
 }
 
+Pose inverse(const Pose& pose) {
+  const double scale = 1 / pose.scale, a = scale * std::cos(pose.angle), b = -scale * std::sin(pose.angle);
+  return {scale, -pose.angle, b * pose.dy - a * pose.dx, -b * pose.dx - a * pose.dy};
+}
+
 Eigen::MatrixXd pose_directions(const Shape& shape) {
   Eigen::MatrixXd d(2 * shape.rows(), 4);
   for (Eigen::Index i = 0; i < shape.rows(); ++i) {
@@ -134,8 +139,9 @@ Aligned procrustes(const std::vector<Shape>& shapes, double width) {
   }
   out.mean = mean;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    out.shapes[i] = transform(align(shapes[i], mean), shapes[i]);
-    out.poses.push_back(align(mean, shapes[i]));
+    const Pose onto_mean = align(shapes[i], mean);
+    out.shapes[i] = transform(onto_mean, shapes[i]);
+    out.poses.push_back(inverse(onto_mean));
   }
   return out;
 }

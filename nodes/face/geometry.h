@@ -14,6 +14,8 @@ Shape unflatten(const Eigen::VectorXd& values);
 Shape transform(const Pose& pose, const Shape& shape);
 /// The pose that applies `inner` first.
 Pose compose(const Pose& outer, const Pose& inner);
+/// The pose that undoes another, whose scale is not 0.
+Pose inverse(const Pose& pose);
 
 /// Moves of the points under small changes of pose: scaling, rotation and the two shifts, a column each (2n × 4).
 Eigen::MatrixXd pose_directions(const Shape& shape);
@@ -26,7 +28,7 @@ Pose align(const Shape& from, const Shape& to);
 struct Aligned {
   Shape mean;                 ///< centred, of the wanted width
   std::vector<Shape> shapes;  ///< each carried onto the mean
-  std::vector<Pose> poses;    ///< from the mean's frame to each given shape
+  std::vector<Pose> poses;    ///< from the mean's frame back: they carry each of `shapes` to the given one
 };
 /// Generalised Procrustes alignment (docs/method.md §2). The mean keeps the average
 /// orientation of the shapes; `width` is its extent in x.

@@ -7,7 +7,8 @@
 
 namespace talkgraph {
 
-/// The landmarks that tracking found, picture coordinates; the model tells the scheme of its points.
+/// The landmarks that tracking found, picture coordinates, none (nan) in lost frames; the model tells the scheme of its
+/// points.
 struct FaceLandmarks {
   LandmarkTrack operator()(const FaceTrack& track, const AppearanceModel* model) const;
 };

@@ -70,15 +70,10 @@ void Looks::prepare_eyes() {
 void Looks::prepare_mouths() {
   check_length("mouths", mouths_.chosen.size(), parameters_);
   mouth_ = mouth_region(model_, mouths_.mouths.points, mouths_.mouths.margin);
-  const auto& pictures = mouths_.mouths.pictures;
-  const auto fits = [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
-    return i >= 0 && i < mouths_.mouths.size() && at < pictures.size() &&
-           pictures[at].pixels.size() == mouth_.box.size();
-  };
-  if (mouths_.mouths.parameters.cols() != model_.modes() ||
-      !std::all_of(mouths_.chosen.begin(), mouths_.chosen.end(), fits))
-    throw std::runtime_error("the mouths were made with another face model");
+  check_mouths(model_, mouth_, mouths_.mouths);
+  for (const auto i : mouths_.chosen)
+    if (i < 0 || i >= mouths_.mouths.size())
+      throw std::runtime_error(fmt::format("mouth {} is to be shown, of {}", i, mouths_.mouths.size()));
   mouth_modes_ = mouth_texture_modes(model_, mouth_);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
@@ -44,6 +45,15 @@ MouthRegion mouth_region(const AppearanceModel& model, const std::vector<int>& p
   for (std::size_t i = 0; i < raster.x.size(); ++i)
     if (region.box.contains({raster.x[i], raster.y[i]})) region.pixels.push_back(static_cast<Eigen::Index>(i));
   return region;
+}
+
+void check_mouths(const AppearanceModel& model, const MouthRegion& region, const Mouths& mouths) {
+  const auto fits = [&](const Image& picture) {
+    return picture.pixels.type() == CV_8UC3 && picture.pixels.size() == region.box.size();
+  };
+  if (mouths.parameters.cols() != model.modes() || static_cast<Eigen::Index>(mouths.pictures.size()) != mouths.size() ||
+      !std::all_of(mouths.pictures.begin(), mouths.pictures.end(), fits))
+    throw std::runtime_error("the mouths were made with another face model");
 }
 
 Eigen::MatrixXf mouth_texture_modes(const AppearanceModel& model, const MouthRegion& region) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "nodes/types/appearance_model.h"
+#include "nodes/types/mouths.h"
 
 namespace talkgraph {
 
@@ -17,6 +18,10 @@ struct MouthRegion {
 /// `margin` is a share of the mouth's width. Throws std::runtime_error if the
 /// model lacks a point or the points span no area.
 MouthRegion mouth_region(const AppearanceModel& model, const std::vector<int>& points, double margin);
+
+/// Throws std::runtime_error unless there are as many pictures as parameters, the latter of the model, the former of
+/// the region's size.
+void check_mouths(const AppearanceModel& model, const MouthRegion& region, const Mouths& mouths);
 
 /// Linear map of appearance parameters c to coordinates in which distance is how
 /// far mouths differ: in texture, and in shape by the weight the model gives it.

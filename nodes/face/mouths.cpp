@@ -16,7 +16,7 @@ namespace {
 
 struct Frame {
   std::size_t clip, number;
-  double residual;
+  double residual;  ///< as a share of the contrast
 };
 
 /// All frames that the model was followed to, less the worst fitted share.
@@ -28,7 +28,7 @@ std::vector<Frame> good_frames(const AppearanceModel& model, const Collected<Vid
     if (!track) continue;
     check_dimension(model, track->parameters);
     for (std::size_t t = 0; t < track->lost.size(); ++t)
-      if (!track->lost[t] && track->gain[t] > 0) found.push_back({clip, t, track->residual[t]});
+      if (!track->lost[t] && track->gain[t] > 0) found.push_back({clip, t, track->residual[t] / track->gain[t]});
   }
   std::vector<double> residuals;
   for (const auto& frame : found) residuals.push_back(frame.residual);
@@ -98,7 +98,7 @@ Mouths KeepMouths::operator()(const AppearanceModel& model, const Collected<Vide
 
 void describe(Description<KeepMouths>& d) {
   d.type("face.mouths")
-      .version(2)
+      .version(3)
       .summary("keeps real mouths of the training clips, for synthesised faces to show")
       .source("after Wang, Qian, Han & Soong 2010; docs/method.md §2")
       .stored();

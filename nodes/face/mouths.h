@@ -16,7 +16,7 @@ struct KeepMouths {
   std::vector<int> points;  ///< around the mouth; empty: outer and inner lips of the point scheme
   double margin = 0.2;      ///< of skin around them, share of the mouth's width
   int limit = 600;          ///< mouths kept at most
-  double leave_out = 0.1;   ///< share of the frames, those of the largest residuals
+  double leave_out = 0.1;   ///< share of the frames, those of the largest residuals for their contrast
 
   Mouths operator()(const AppearanceModel& model, const Collected<Video>& videos, const Collected<FaceTrack>& tracks,
                     Context& context) const;

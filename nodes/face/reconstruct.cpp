@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "nodes/face/draw.h"
@@ -12,31 +11,6 @@
 
 namespace talkgraph {
 namespace {
-
-/// The raster with its face; pixels around the face have the mean of their neighbours inside it.
-cv::Mat padded(const Raster& raster, const Eigen::VectorXf& texture) {
-  const cv::Mat picture = raster_picture(raster, texture),
-                inside = raster_picture(raster, Eigen::VectorXf::Ones(texture.size()));
-  cv::Mat sum, weight, around, mask;
-  cv::boxFilter(picture, sum, CV_32F, {5, 5});
-  cv::boxFilter(inside, weight, CV_32F, {5, 5});
-  cv::divide(sum, cv::max(weight, 1e-6), around);
-  cv::extractChannel(inside, mask, 0);
-  picture.copyTo(around, mask > 0);
-  return around;
-}
-
-/// Draws a texture of grey levels into the picture; gives the mask of what was drawn.
-cv::Mat draw(const AppearanceModel& model, const Eigen::VectorXf& texture, const Shape& shape, cv::Mat& picture) {
-  const auto& raster = model.levels[0].raster;
-  cv::Mat map = empty_map(picture.size()), face, mask;
-  draw_map(map, shape, raster.points, model.triangles);
-  cv::remap(padded(raster, texture), face, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  face.convertTo(face, CV_8UC3);
-  cv::inRange(map, cv::Scalar(-50, -50), cv::Scalar(1e9, 1e9), mask);
-  face.copyTo(picture, mask);
-  return mask;
-}
 
 double psnr(const cv::Mat& a, const cv::Mat& b, const cv::Mat& mask) {
   const double values = 3.0 * std::max(1, cv::countNonZero(mask));
@@ -67,7 +41,7 @@ Reconstruction reconstruct(const AppearanceModel& model, const cv::Mat& picture,
   const Eigen::VectorXf texture = model.texture(out.c);
   out.picture = picture.clone();
   const Eigen::VectorXf grey = (texture * static_cast<float>(light.gain)).array() + static_cast<float>(light.offset);
-  const cv::Mat mask = draw(model, grey, out.shape, out.picture);
+  const cv::Mat mask = draw_texture(model, grey, out.shape, out.picture);
   out.landmarks = std::sqrt((out.shape - landmarks).rowwise().squaredNorm().mean());
   out.texture_error =
       light.gain * static_cast<double>((texture - out.texture).norm()) / std::sqrt(static_cast<double>(texture.size()));

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "nodes/face/draw.h"
-#include "nodes/face/sampling.h"
 #include "nodes/face/shapes.h"
 
 namespace talkgraph {
@@ -19,17 +17,10 @@ struct Scene {
 };
 
 void draw(const Scene& scene, std::size_t t, cv::Mat& frame) {
-  const auto& raster = scene.model.levels.at(0).raster;
   const Eigen::VectorXd c = scene.track.parameters.values.row(static_cast<Eigen::Index>(t));
   const Eigen::VectorXf texture = (scene.model.texture(c) * static_cast<float>(scene.track.gain[t])).array() +
                                   static_cast<float>(scene.track.offset[t]);
-  cv::Mat map = empty_map(frame.size());
-  draw_map(map, scene.track.shapes[t], raster.points, scene.model.triangles);
-  cv::Mat face = raster_picture(raster, texture, cv::Scalar::all(scene.track.offset[t])), drawn, inside;
-  cv::remap(face, drawn, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-  drawn.convertTo(drawn, CV_8UC3);
-  cv::inRange(map, cv::Scalar::all(-1), cv::Scalar::all(std::max(raster.width, raster.height)), inside);
-  drawn.copyTo(frame, inside);
+  draw_texture(scene.model, texture, scene.track.shapes[t], frame);
 }
 
 class RedrawnReader final : public VideoSource::Reader {
@@ -83,7 +74,7 @@ Video RedrawFace::operator()(const AppearanceModel& model, const FaceTrack& trac
 
 void describe(Description<RedrawFace>& d) {
   d.type("face.redraw")
-      .version(1)
+      .version(2)
       .summary("what the face model sees in a clip: its face drawn where it was found")
       .source("Thesis Eqn 3.18; docs/method.md §2");
   d.input("model", "of the face")

@@ -33,16 +33,20 @@ Near nearest(const Eigen::MatrixXd& wanted, const Eigen::MatrixXd& kept, Eigen::
   return near;
 }
 
-/// Normalised textures of the real mouths, a column each.
-Eigen::MatrixXf textures(const AppearanceModel& model, const Mouths& mouths) {
-  const auto& picture = mouths.pictures.front().pixels;
-  Eigen::MatrixXf all(3 * picture.total(), mouths.size());
-  for (Eigen::Index i = 0; i < all.cols(); ++i) {
-    cv::Mat column(picture.size(), CV_32FC3, all.col(i).data());
-    mouths.pictures[static_cast<std::size_t>(i)].pixels.convertTo(column, CV_32FC3, 1 / model.texture_gain);
+/// Real mouths side by side.
+struct Textures {
+  Textures(const AppearanceModel& model, const Mouths& mouths, const Near& near, Eigen::Index t)
+      : columns(3 * mouths.pictures.front().pixels.total(), near.mouth.cols()) {
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+      const cv::Mat& picture = mouths.pictures[static_cast<std::size_t>(near.mouth(t, i))].pixels;
+      cv::Mat column(picture.size(), CV_32FC3, columns.col(i).data());
+      picture.convertTo(column, CV_32FC3, 1 / model.texture_gain);
+    }
+    sizes = columns.colwise().squaredNorm().cast<double>();
   }
-  return all;
-}
+  Eigen::MatrixXf columns;   ///< normalised textures of the mouths near those of frame t, one each
+  Eigen::RowVectorXd sizes;  ///< squared norms
+};
 
 }  // namespace
 
@@ -70,21 +74,20 @@ MouthTrack SelectMouths::operator()(const AppearanceModel& model, const Mouths& 
   check_dimension(model, parameters);
   MouthTrack out{mouths, {}};
   if (mouths.size() == 0 || parameters.frames() == 0) return out;
-  if (mouths.parameters.cols() != model.modes())
-    throw std::runtime_error("the mouths were made with another face model");
+  const auto region = mouth_region(model, mouths.points, mouths.margin);
+  check_mouths(model, region, mouths);
   if (!parameters.values.allFinite())
     throw std::runtime_error("the appearance parameters hold a value that is not a number");
-  const auto metric = mouth_metric(model, mouth_region(model, mouths.points, mouths.margin), mouths.points);
+  const auto metric = mouth_metric(model, region, mouths.points);
   const auto near = nearest(metric * parameters.values.transpose(), metric * mouths.parameters.transpose(),
                             std::min<Eigen::Index>(candidates, mouths.size()));
-  const Eigen::MatrixXf real = textures(model, mouths);
-  const Eigen::RowVectorXd size = real.colwise().squaredNorm().cast<double>();
+  Textures before(model, mouths, near, 0);
   const auto path = cheapest_path(near.distance, [&](Eigen::Index t) {
-    const auto before = near.mouth.row(t - 1).transpose().eval(), now = near.mouth.row(t).transpose().eval();
-    const Eigen::MatrixXf likeness = real(Eigen::all, before).transpose() * real(Eigen::all, now);
-    const Eigen::MatrixXd sum =
-        size(before).transpose().replicate(1, now.size()) + size(now).replicate(before.size(), 1);
-    return Eigen::MatrixXd(smoothness * (sum - 2 * likeness.cast<double>()).cwiseMax(0));
+    Textures now(model, mouths, near, t);
+    const Eigen::MatrixXd likeness = (before.columns.transpose() * now.columns).cast<double>();
+    Eigen::MatrixXd step = smoothness * (((-2 * likeness).rowwise() + now.sizes).colwise() + before.sizes.transpose());
+    before = std::move(now);
+    return Eigen::MatrixXd(step.cwiseMax(0));
   });
   for (Eigen::Index t = 0; t < parameters.frames(); ++t)
     out.chosen.push_back(near.mouth(t, path[static_cast<std::size_t>(t)]));

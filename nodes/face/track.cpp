@@ -21,7 +21,7 @@ class Tracker {
       : settings_(settings),
         model_(model),
         fitter_(model, settings.fitter),
-        options_{settings.iterations, settings.tolerance, FitOptions{}.limit},
+        options_{settings.iterations, settings.tolerance, FitOptions{}.limit, settings.reach},
         threshold_(settings.lost_above * std::max(model.residual, 4.0 / 3) / model.texture_gain) {}
 
   /// How far the nearest bound of a good fit is away, 0 outside. The residual counts in the model's own light: a
@@ -152,7 +152,7 @@ FaceTrack TrackFace::operator()(const AppearanceModel& model, const Video& video
 }
 
 void describe(Description<TrackFace>& d) {
-  d.type("face.track").version(3).summary("follows the face through a clip with the model alone");
+  d.type("face.track").version(4).summary("follows the face through a clip with the model alone");
   d.source("Thesis §3.1.4, Algorithm 1; docs/method.md §2").stored();
   d.input("model", "of the face")
       .input("video", "a clip of that speaker")
@@ -168,6 +168,11 @@ void describe(Description<TrackFace>& d) {
           "model's own over its prototypes (taken as at least 4/3 grey levels)");
   d.param("iterations", &TrackFace::iterations).at_least(1).doc("at most, per pyramid level and frame");
   d.param("tolerance", &TrackFace::tolerance).within(0, 1).doc("relative gain under which a fit ends");
+  d.param("reach", &TrackFace::reach)
+      .within(0, 2)
+      .doc(
+          "a fit whose error is far above the model's own is tried again from so far on all four sides, as a share of "
+          "half the face's width; 0: never");
   d.param("scale_range", &TrackFace::scale_range)
       .within(1, 10)
       .doc("the first frame is searched for faces of the prototypes' average size divided and multiplied by this");

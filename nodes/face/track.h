@@ -22,6 +22,7 @@ struct TrackFace {
                              ///< over its prototypes (taken as at least 4/3 grey levels)
   int iterations = 10;       ///< at most, per pyramid level
   double tolerance = 1e-3;   ///< relative gain under which a fit ends
+  double reach = 0.1;        ///< a doubtful fit is tried again from so far on all four sides, half widths of the face
   double scale_range = 1.6;  ///< the search covers the prototypes' average size divided and multiplied by this
   int candidates = 6;        ///< windows that the search fits
 

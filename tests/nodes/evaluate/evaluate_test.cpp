@@ -120,7 +120,7 @@ TEST(Compare, StacksRowsUnderTheirNames) {
 }
 
 // A mouth that opens with the loudness of the sound, `late` frames later.
-Scores lag_of(int late) {
+Scores lag_of(int late, bool all_found = true) {
   Random random(2);
   std::vector<double> loudness(100);
   for (std::size_t t = 0; t < loudness.size(); ++t)
@@ -134,6 +134,7 @@ Scores lag_of(int late) {
   for (int t = 0; t < 100; ++t) {
     Shape shape = Shape::Zero(68, 2);
     shape(66, 1) = 10 * loudness[static_cast<std::size_t>(std::clamp(t - late, 0, 99))];
+    if (!all_found && t % 7 == 3) shape.setConstant(NAN);
     landmarks.frames.push_back(shape);
   }
   return *MouthLag{}(landmarks, audio);
@@ -145,6 +146,12 @@ TEST(MouthLag, FindsHowLateTheMouthIs) {
     EXPECT_EQ(s["lag"], late);
     EXPECT_GT(s["correlation"], 0.99);
   }
+}
+
+TEST(MouthLag, LeavesOutFramesWithoutLandmarks) {
+  auto s = lag_of(2, false).values;
+  EXPECT_EQ(s["lag"], 2);
+  EXPECT_GT(s["correlation"], 0.99);
 }
 
 TEST(MouthLag, SaysNothingOfAStillMouthAndRefusesOtherSchemes) {
@@ -186,8 +193,17 @@ TEST(MouthOpening, TakesThePointsOfTheScheme) {
   landmarks.frames[0](54, 1) = 1;  // the middle of the inner lower lip
   landmarks.frames[0](42, 0) = 4;  // a corner
   EXPECT_DOUBLE_EQ(MouthOpening{}(landmarks, {{"b"}, Rational(25)})->values.at("closed"), 0.25);
-  landmarks.frames[0].row(0).setConstant(NAN);
-  EXPECT_THROW(MouthOpening{}(landmarks, {{"b"}, Rational(25)}), std::runtime_error);
+}
+
+TEST(MouthOpening, LeavesOutFramesWithoutLandmarks) {
+  auto some = mouth({0.2, 9, 0.8, 0.4, 0.1, 9});
+  const FrameLabels labels{{"sil", "sil", "b", "b", "m", "m"}, Rational(25)};
+  for (const std::size_t t : {1, 4, 5}) some.frames[t].setConstant(NAN);
+  const auto scores = *MouthOpening{}(some, labels);
+  EXPECT_NEAR(scores.values.at("pause"), 0.05, 1e-12);
+  EXPECT_NEAR(scores.values.at("closed"), 0.1, 1e-12) << "of b alone";
+  for (auto& shape : some.frames) shape.setConstant(NAN);
+  EXPECT_FALSE(MouthOpening{}(some, labels));
 }
 
 TEST(MouthOpening, SaysNothingWithoutItsPhonesAndRefusesWhatDoesNotFit) {

@@ -41,11 +41,16 @@ TEST(BuildAppearance, ReconstructsPrototypesWithinTheVarianceKept) {
   EXPECT_LT(m.residual, 2);
 }
 
-TEST(BuildAppearance, WeighsShapeAgainstTexture) {
-  const auto m = build(test::synthetic_prototypes());
-  EXPECT_NEAR(m.shape_weight * m.shape_weight, m.texture_variances.sum() / m.shape_variances.sum(), 1e-9);
+TEST(BuildAppearance, WeighsShapeAgainstTextureByAllTheirVariance) {
+  const auto p = test::synthetic_prototypes();
+  Context context;
+  const auto all = BuildAppearance{.retain_shape = 1, .retain_texture = 1}(p, context);
+  const auto m = BuildAppearance{.retain_shape = 0.6, .retain_texture = 0.9}(p, context);
+  EXPECT_NEAR(all.shape_weight * all.shape_weight, all.texture_variances.sum() / all.shape_variances.sum(), 1e-9);
+  EXPECT_NEAR(m.shape_weight, all.shape_weight, 1e-9 * all.shape_weight);
   EXPECT_EQ(m.combined_modes.rows(), m.shape_variances.size() + m.texture_variances.size());
-  EXPECT_GE(m.combined_variances.sum(), 0.99 * 2 * m.texture_variances.sum() * (1 - 1e-9));
+  const double weighed = std::pow(m.shape_weight, 2) * m.shape_variances.sum() + m.texture_variances.sum();
+  EXPECT_GE(m.combined_variances.sum(), 0.99 * weighed * (1 - 1e-9));
 }
 
 TEST(BuildAppearance, NeverEnlarges) {

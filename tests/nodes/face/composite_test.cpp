@@ -129,25 +129,45 @@ TEST(FaceShapes, OpenMouthsAreTallerThanShut) {
   EXPECT_NEAR(height(open) - height(shut), 45 * 2 * 0.16 * 0.8, 1);
 }
 
-TEST(ChooseBase, PrefersNoLostFramesThenTheLowestResidual) {
+/// Tracked clips that ChooseBase is to choose from.
+struct Clips {
   Collected<Video> videos;
   Collected<FaceTrack> tracks;
-  const auto add = [&](std::string key, std::int64_t lost, double residual) {
-    auto t = track(still(0.5, 1));
-    t.lost = {lost};
-    t.residual = {residual};
-    videos.add(key, still(0.5, 1, key));
+  void add(std::string key, std::vector<std::int64_t> lost, double residual, double gain = 1000) {
+    const auto frames = static_cast<int>(lost.size());
+    auto t = track(still(0.5, frames));
+    t.lost = std::move(lost);
+    t.residual.assign(t.lost.size(), residual);
+    t.gain.assign(t.lost.size(), gain);
+    videos.add(key, still(0.5, frames, key));
     tracks.add(key, t);
-  };
-  add("a", 1, 1);
-  add("b", 0, 3);
-  add("c", 0, 2);
-  videos.add("untracked", still(0.5, 1));
-  EXPECT_EQ(ChooseBase{}(videos, tracks).frames.source->name(), "c");
-  EXPECT_EQ(ChooseBase{"a"}(videos, tracks).frames.source->name(), "a");
-  EXPECT_THROW(ChooseBase{"d"}(videos, tracks), std::runtime_error);
-  EXPECT_THROW(ChooseBase{}({}, {}), std::runtime_error);
+  }
+  std::string chosen(ChooseBase node) const { return node(videos, tracks).frames.source->name(); }
+};
+
+TEST(ChooseBase, TakesTheBestFittedOneThatIsLongEnough) {
+  Clips clips;
+  clips.add("lost", {1, 1, 1}, 1);
+  clips.add("short", {0}, 1);
+  clips.add("interrupted", {0, 1, 0}, 1);
+  clips.add("well", {0, 0, 0}, 2);
+  clips.add("badly", {0, 0, 0, 0}, 3);
+  clips.videos.add("untracked", still(0.5, 9));
+  EXPECT_EQ(clips.chosen({"", 0.12}), "well");
+  EXPECT_EQ(clips.chosen({"", 9}), "badly") << "the longest";
+  EXPECT_EQ(clips.chosen({"", 0.04}), "short");
+  EXPECT_EQ(clips.chosen({"lost"}), "lost");
+  EXPECT_THROW(clips.chosen({"none"}), std::runtime_error);
 }
+
+TEST(ChooseBase, IsNotDrawnToDimPictures) {
+  Clips clips;
+  clips.add("dim", {0, 0}, 1, 400);
+  clips.add("bright", {0, 0}, 2, 1000);
+  EXPECT_EQ(clips.chosen(ChooseBase{}), "bright");
+}
+
+TEST(ChooseBase, RefusesNoClip) { EXPECT_THROW(ChooseBase{}({}, {}), std::runtime_error); }
 
 TEST(MakeBaseClip, RefusesUnequalLengths) {
   EXPECT_THROW(MakeBaseClip{}(talking(2), track(talking(1))), std::runtime_error);

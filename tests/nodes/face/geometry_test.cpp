@@ -51,6 +51,26 @@ TEST(Geometry, ProcrustesUndoesSimilarities) {
   }
 }
 
+TEST(Geometry, ProcrustesPosesLeadBackToTheGivenShapes) {
+  Random random(9);
+  std::vector<Shape> shapes;
+  const Shape s = random_shape(random, 12);
+  for (int i = 0; i < 6; ++i)
+    shapes.push_back(transform({random.uniform(0.5, 2), random.uniform(-0.5, 0.5), random.uniform(-9, 9), 3},
+                               s + 0.2 * random_shape(random, 12)));
+  const auto aligned = procrustes(shapes, 100);
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    EXPECT_LT((transform(aligned.poses[i], aligned.shapes[i]) - shapes[i]).norm(), 1e-9) << i;
+}
+
+TEST(Geometry, InverseUndoesAPose) {
+  Random random(10);
+  const Shape s = random_shape(random, 5);
+  const Pose pose{1.2, 0.3, 4, 5};
+  EXPECT_LT((transform(inverse(pose), transform(pose, s)) - s).norm(), 1e-12);
+  EXPECT_LT((transform(pose, transform(inverse(pose), s)) - s).norm(), 1e-12);
+}
+
 TEST(Geometry, ProcrustesRefusesCoincidingPoints) {
   EXPECT_THROW(procrustes({Shape::Zero(4, 2)}, 100), std::runtime_error);
 }

@@ -194,7 +194,22 @@ TEST(LidClosure, GoesDownFasterThanUp) {
 TEST(Eyes, GivenOnesAreHeldAtTheirLastFrame) {
   const Track own = random_track(model(), 4, 1), given = random_track(model(), 2, 2);
   const auto eyes = make(eyes_from(EyeSource::given), model(), own, &given);
-  for (int t = 0; t < 4; ++t) EXPECT_EQ(eyes.parameters.values.row(t), given.values.row(std::min(t, 1)));
+  for (int t = 0; t < 4; ++t)
+    EXPECT_LT((eyes.parameters.values.row(t) - given.values.row(std::min(t, 1))).norm(), 1e-12);
+}
+
+TEST(Eyes, GivenOnesAreTakenAtTheSameTime) {
+  const Track own = random_track(model(), 8, 1, Rational(50)), given = random_track(model(), 4, 2, Rational(25));
+  const auto eyes = make(eyes_from(EyeSource::given), model(), own, &given);
+  const auto& v = given.values;
+  const auto expect = [&](int t, const Eigen::RowVectorXd& wanted) {
+    EXPECT_LT((eyes.parameters.values.row(t) - wanted).norm(), 1e-12) << t;
+  };
+  expect(0, v.row(0));  // 0.01 s, before the first given frame's middle
+  expect(1, 0.75 * v.row(0) + 0.25 * v.row(1));
+  expect(2, 0.25 * v.row(0) + 0.75 * v.row(1));
+  expect(5, 0.75 * v.row(2) + 0.25 * v.row(3));
+  expect(7, v.row(3));
 }
 
 TEST(Eyes, SayWhatTheyLack) {
@@ -296,7 +311,7 @@ TEST(Looks, RefuseWhatDoesNotFit) {
   none_there.mouths.points = mouth;
   none_there.mouths.parameters.resize(0, model().modes());
   none_there.chosen = {0, 0};
-  EXPECT_THAT(error(track, nullptr, &none_there), testing::HasSubstr("another face model"));
+  EXPECT_THAT(error(track, nullptr, &none_there), testing::HasSubstr("mouth 0 is to be shown, of 0"));
 }
 
 Video clip(int frames, double gain = 1, double offset = 0) {
@@ -360,6 +375,18 @@ TEST(KeepMouths, LeavesOutLostFramesAndTheWorstFitted) {
   EXPECT_EQ(keep(node, video, seen).size(), 0);
   node.limit = 0;
   EXPECT_EQ(keep(node, video, track(video)).size(), 0);
+}
+
+TEST(KeepMouths, JudgesAFitByItsContrast) {
+  const Video video = clip(4);
+  auto seen = track(video);
+  seen.residual = {2, 2, 1.5, 2};
+  seen.gain = {1000, 1000, 500, 1000};  // the third is dim
+  KeepMouths node;
+  node.leave_out = 0.25;
+  const auto kept = keep(node, video, seen);
+  ASSERT_EQ(kept.size(), 3);
+  EXPECT_EQ(kept.parameters.row(2), seen.parameters.values.row(3));
 }
 
 TEST(KeepMouths, NamesThePointThatIsMissing) {
@@ -485,6 +512,12 @@ TEST_F(RealMouths, TakeAnyLengthAndRefuseWhatIsNoNumber) {
   EXPECT_TRUE(select(1, one).chosen.empty());
   Mouths foreign = mouths;
   foreign.parameters.conservativeResize(foreign.size(), 1);
+  EXPECT_THROW(SelectMouths{}(model(), foreign, seen.parameters), std::runtime_error);
+  foreign = mouths;
+  foreign.pictures[5].pixels = foreign.pictures[5].pixels.colRange(1, 9);
+  EXPECT_THROW(SelectMouths{}(model(), foreign, seen.parameters), std::runtime_error);
+  foreign = mouths;
+  foreign.pictures.pop_back();
   EXPECT_THROW(SelectMouths{}(model(), foreign, seen.parameters), std::runtime_error);
 }
 

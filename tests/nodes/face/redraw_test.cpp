@@ -41,6 +41,29 @@ TEST(RedrawFace, ShowsWhatWasFound) {
   EXPECT_NE(RedrawFace{}(model, track, video).source->key(), before);
 }
 
+TEST(RedrawFace, KeepsTheFacesColourUpToItsEdge) {
+  auto model = build();
+  const auto values = model.levels[0].mean->rows();
+  Eigen::MatrixXf plain(values, 1);
+  for (Eigen::Index i = 0; i < values; ++i) plain(i, 0) = static_cast<float>(i % 3 - 1) / model.texture_gain;
+  model.levels[0].mean = std::make_shared<Eigen::MatrixXf>(plain);
+  const auto video = video_from_frames({cv::Mat(200, 200, CV_8UC3, cv::Scalar(1, 2, 3))}, Rational(25));
+  Context context;
+  auto track = TrackFace{}(model, video, context);
+  track.parameters.values.setZero();
+  track.shapes[0] = test::landmarks({});
+  track.gain[0] = 60 * model.texture_gain;
+  track.offset[0] = 100;
+  const cv::Mat drawn = RedrawFace{}(model, track, video).read_all()[0];
+  int face = 0;
+  for (const auto& pixel : cv::Mat_<cv::Vec3b>(drawn)) {
+    if (pixel == cv::Vec3b(1, 2, 3)) continue;
+    EXPECT_EQ(pixel, cv::Vec3b(40, 100, 160));
+    ++face;
+  }
+  EXPECT_GT(face, 5000);
+}
+
 TEST(RedrawFace, RefusesTheTrackOfAnother) {
   const auto model = build();
   const auto video = video_from_frames({test::draw({})}, Rational(25));

@@ -56,7 +56,7 @@ TEST(TrackFace, BridgesADamagedFrame) {
   }
 }
 
-TEST(FaceTrack, GivesItsParametersWithLostFramesAndItsLandmarks) {
+TEST(FaceTrack, GivesItsParametersWithLostFramesAndLandmarksOfTheOthers) {
   auto frames = talking(4);
   frames[2].setTo(cv::Scalar(128, 128, 128));
   const auto t = track(video_from_frames(frames, Rational(25)));
@@ -66,6 +66,8 @@ TEST(FaceTrack, GivesItsParametersWithLostFramesAndItsLandmarks) {
   EXPECT_EQ(landmarks.rate, Rational(25));
   ASSERT_EQ(landmarks.frames.size(), 4u);
   EXPECT_EQ(landmarks.frames[3], t.shapes[3]);
+  EXPECT_EQ(landmarks.frames[2].rows(), t.shapes[2].rows());
+  EXPECT_TRUE(landmarks.frames[2].array().isNaN().all()) << "the face was lost there";
   EXPECT_EQ(landmarks.scheme, "synthetic");
   EXPECT_EQ(FaceLandmarks{}(t, nullptr).scheme, "");
 }
