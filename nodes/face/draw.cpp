@@ -75,10 +75,10 @@ class Texture {
   /// The first three bytes count.
   unsigned at(int x, int y) const {
     const unsigned char* corner = pixels_ + (y >> 16) * step_ + 4 * (x >> 16);
-    const auto across = weights(x), down = weights(y);
-    const auto rows = cv::v_pack(cv::v_dotprod(beside(cv::v_load_expand(corner)), across),
-                                 cv::v_dotprod(beside(cv::v_load_expand(corner + step_)), across));
-    const auto sum = (cv::v_dotprod(beside(cv::v_reinterpret_as_u16(rows)), down) + cv::v_setall_s32(1 << 13)) >> 14;
+    const auto upper = cv::v_load_expand(corner), lower = cv::v_load_expand(corner + step_);
+    const auto down = cv::v_setall_u16(static_cast<unsigned short>(y >> 9 & 127));
+    const auto column = cv::v_add_wrap(upper << 7, cv::v_mul_wrap(cv::v_sub_wrap(lower, upper), down));
+    const auto sum = (cv::v_dotprod(beside(column), weights(x)) + cv::v_setall_s32(1 << 13)) >> 14;
     const auto narrow = cv::v_pack(sum, sum);
     return cv::v_reinterpret_as_u32(cv::v_pack_u(narrow, narrow)).get0();
   }

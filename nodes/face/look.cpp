@@ -87,11 +87,13 @@ Look Looks::at(Eigen::Index t) const {
 void Looks::fill(Eigen::Index first, std::vector<Look>& looks, Eigen::MatrixXf& textures) const {
   const auto& level = model_.levels[0];
   const auto count = static_cast<Eigen::Index>(looks.size());
-  textures.noalias() = *level.appearance * parameters_.values.middleRows(first, count).transpose().cast<float>();
+  textures.resize(level.mean->rows(), count);
+  for (auto texture : textures.colwise()) texture = level.mean->col(0);
+  textures.noalias() += *level.appearance * parameters_.values.middleRows(first, count).transpose().cast<float>();
   for (Eigen::Index i = 0; i < count; ++i) {
     Look& look = looks[static_cast<std::size_t>(i)];
     look.shape = model_.shape(parameters_.values.row(first + i));
-    look.texture = level.mean->col(0) + textures.col(i);
+    look.texture = textures.col(i);
     if (!eyes_.points.empty()) put_eyes(look, first + i);
     if (!mouths_.chosen.empty()) put_mouth(look, first + i);
   }
@@ -150,7 +152,7 @@ void Looks::hash(Archive& ar) const {
 }
 
 const Look* LookReader::next() {
-  constexpr Eigen::Index block = 16;
+  constexpr Eigen::Index block = 64;
   if (at_ == looks_->parameters().frames()) return nullptr;
   if (at_ == first_ + static_cast<Eigen::Index>(block_.size())) {
     first_ = at_;
