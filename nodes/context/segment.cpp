@@ -20,6 +20,8 @@ std::string fitting_label(const Vlmm& vlmm, const std::string& context, std::int
 }  // namespace
 
 SegmentTrack ContextSegment::operator()(const Vlmm& vlmm, const FrameLabels& contexts) const {
+  const auto frames = static_cast<std::int64_t>(contexts.labels.size());
+  if (states == StateKind::one && frames > 0) return {{{one_state, 0, frames}}, frames, contexts.rate};
   std::vector<std::string> phones;
   for (const auto& context : contexts.labels) phones.push_back(last_phone(context));
   const auto parts = units(phones, states == StateKind::phones || !vlmm.repeating);
@@ -34,7 +36,7 @@ SegmentTrack ContextSegment::operator()(const Vlmm& vlmm, const FrameLabels& con
     const auto start = parts[static_cast<std::size_t>(end)].start;
     backwards.push_back({label, start, last.start + last.length - start});
   }
-  return {{backwards.rbegin(), backwards.rend()}, static_cast<std::int64_t>(phones.size()), contexts.rate};
+  return {{backwards.rbegin(), backwards.rend()}, frames, contexts.rate};
 }
 
 void describe(Description<ContextSegment>& d) {

@@ -17,6 +17,7 @@ struct Window {
 };
 
 struct Sequence {
+  Eigen::Index frames = 0;
   std::vector<Unit> units;
   const Track* audio;
   const Track* visual;
@@ -42,7 +43,7 @@ std::vector<Sequence> pair_up(const Collected<FrameLabels>& labels, const Collec
       throw std::runtime_error(labels.key(i) + ": " + std::to_string(n) + " labels, " + std::to_string(a->frames()) +
                                " audio frames, " + std::to_string(v->frames()) +
                                " visual frames; bring all to one rate");
-    sequences.push_back({units({phones.begin(), phones.begin() + shortest}, runs), a, v});
+    sequences.push_back({shortest, units({phones.begin(), phones.begin() + shortest}, runs), a, v});
   }
   if (sequences.empty())
     throw std::runtime_error("no training sequence has labels, sound and face: is the selection empty?");
@@ -54,8 +55,10 @@ std::map<std::string, State> states_of(const Vlmm& vlmm, StateKind kind) {
   std::map<std::string, State> states;
   if (kind == StateKind::contexts)
     for (const auto& [label, count] : vlmm.windows) states[label];
-  else
+  else if (kind == StateKind::phones)
     for (const auto& phone : vlmm.alphabet) states[phone];
+  else
+    states[one_state];
   return states;
 }
 
@@ -81,6 +84,21 @@ void add_windows(const std::vector<Sequence>& sequences, std::map<std::string, S
           it->second.windows.push_back({s, oldest.start, stop - oldest.start});
       }
     }
+  }
+}
+
+/// Every utterance, in as many windows as lost frames cut it into.
+void add_utterances(const std::vector<Sequence>& sequences, State& state) {
+  for (std::size_t s = 0; s < sequences.size(); ++s) {
+    const Eigen::Index end = sequences[s].frames;
+    Eigen::Index start = 0;
+    const auto add_until = [&](Eigen::Index stop) {
+      if (stop > start) state.windows.push_back({s, start, stop - start});
+      start = stop + 1;
+    };
+    for (const auto lost : sequences[s].visual->lost)
+      if (lost < end) add_until(lost);
+    add_until(end);
   }
 }
 
@@ -119,7 +137,10 @@ Stream<StateData> ContextWindows::operator()(const Vlmm& vlmm, const Collected<F
   const bool runs = states == StateKind::phones || !vlmm.repeating;
   auto sequences = std::make_shared<const std::vector<Sequence>>(pair_up(labels, audio, visual, runs));
   auto by_label = states_of(vlmm, states);
-  add_windows(*sequences, by_label);
+  if (states == StateKind::one)
+    add_utterances(*sequences, by_label[one_state]);
+  else
+    add_windows(*sequences, by_label);
   auto all = std::make_shared<std::vector<State>>();
   for (auto& [label, state] : by_label) {
     if (state.windows.empty()) continue;

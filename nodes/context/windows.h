@@ -11,8 +11,9 @@ namespace talkgraph {
 
 /// The training windows of each state, one item a state, keyed by its label:
 /// every stretch of the training streams that equals the label's phones,
-/// overlaps allowed; with phones as states, the runs of each phone (docs/method.md §5).
-/// A window with a lost visual frame is left out.
+/// overlaps allowed; with phones as states, the runs of each phone; with one
+/// state, whole utterances (docs/method.md §5).
+/// A window with a lost visual frame is left out; an utterance is cut there.
 /// States with most frames come first. A state has windows of at most
 /// `max_frames` frames together, or one longer window; they are chosen evenly
 /// from all.

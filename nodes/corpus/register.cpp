@@ -8,6 +8,7 @@
 #include "nodes/corpus/pick.h"
 #include "nodes/corpus/select.h"
 #include "nodes/corpus/splits.h"
+#include "nodes/corpus/thin.h"
 
 namespace talkgraph {
 
@@ -19,6 +20,7 @@ void register_corpus(Registry& registry) {
   registry.add<Pick>();
   registry.add<Select>();
   registry.add<Splits>();
+  registry.add<Thin>();
   registry.add<Parts>();
 }
 

@@ -282,6 +282,33 @@ TEST(ContextWindows, TakesRunsWithPhonesAsStates) {
   EXPECT_EQ(first->value.audio[0].rows(), 2);
 }
 
+TEST(ContextWindows, OneStateHoldsUtterancesCutAtLostFrames) {
+  const Collected<FrameLabels> labels{{"x", stream("aabbbac")}, {"y", stream("ab")}, {"z", stream("")}};
+  Track cut = ramp(7, 100);
+  cut.lost = {0, 3, 6};
+  const Collected<Track> audio{{"x", ramp(7, 0)}, {"y", ramp(2, 50)}, {"z", ramp(0, 0)}},
+      visual{{"x", cut}, {"y", ramp(2, 150)}, {"z", ramp(0, 0)}};
+  auto states = ContextWindows{.states = StateKind::one}(Vlmm{}, labels, audio, visual);
+  const auto state = states.next();
+  ASSERT_TRUE(state);
+  EXPECT_EQ(state->key, "utterance");
+  ASSERT_EQ(state->value.audio.size(), 3u);
+  EXPECT_EQ(state->value.audio[0], Eigen::Vector2d(1, 2));
+  EXPECT_EQ(state->value.visual[1], Eigen::Vector2d(104, 105));
+  EXPECT_EQ(state->value.audio[2], Eigen::Vector2d(50, 51));
+  EXPECT_FALSE(states.next());
+}
+
+TEST(ContextSegment, OneStateMakesOneSegment) {
+  const ContextSegment segment{StateKind::one};
+  const auto track = segment(Vlmm{}, stream("aab"));
+  ASSERT_EQ(track.segments.size(), 1u);
+  EXPECT_EQ(track.segments[0].label, "utterance");
+  EXPECT_EQ(track.segments[0].length, 3);
+  EXPECT_EQ(track.frames, 3);
+  EXPECT_TRUE(segment(Vlmm{}, FrameLabels{}).segments.empty());
+}
+
 TEST(ContextWindows, RefusesTracksOfOtherLengths) {
   const Collected<FrameLabels> labels{{"x", stream("aaaaaaaa")}};
   const Collected<Track> audio{{"x", ramp(8, 0)}}, visual{{"x", ramp(4, 0)}};

@@ -11,6 +11,7 @@
 #include "nodes/corpus/register.h"
 #include "nodes/corpus/select.h"
 #include "nodes/corpus/splits.h"
+#include "nodes/corpus/thin.h"
 #include "nodes/media/audio_file.h"
 #include "nodes/media/check_video.h"
 #include "nodes/media/ffmpeg.h"
@@ -309,6 +310,29 @@ TEST(Select, TakesTheSplitsNamed) {
   EXPECT_TRUE(Select{}(recording));
   EXPECT_TRUE((Select{{"test", "train"}}(recording)));
   EXPECT_FALSE((Select{{"test"}}(recording)));
+}
+
+TEST(Thin, KeepsRecordingsSpreadOverTheirSplit) {
+  Collected<Recording> all;
+  for (int i = 0; i < 10; ++i) {
+    Recording r;
+    r.id = std::to_string(i);
+    r.split = i % 5 == 4 ? "test" : "train";
+    all.add(r.id, r);
+  }
+  const auto kept = [&](const Thin& thin) {
+    std::string ids;
+    auto stream = thin(all);
+    while (const auto item = stream.next()) ids += item->value.id;
+    return ids;
+  };
+  EXPECT_EQ(kept({{"train"}, 4}), "134689");
+  EXPECT_EQ(kept({{"train"}, 8}), "0123456789");
+  EXPECT_EQ(kept({{"train"}, 100}), "0123456789");
+  EXPECT_EQ(kept({{"train"}, 1}).size(), 3u);
+  EXPECT_EQ(kept({{}, 1}).size(), 2u);
+  EXPECT_EQ(kept({{}, 1}), kept({{}, 1}));
+  EXPECT_THROW((Thin{{"trian"}, 4})(all), std::runtime_error);
 }
 
 TEST(Pick, TakesTheRecordingsNamed) {
