@@ -175,22 +175,17 @@ Project::Project(std::string manifest, std::vector<Clip> clips, Destination dest
       annotations_(std::move(destination.folder), scheme_.points()),
       frames_(all_frames(clips_, annotations_, options)),
       beginner_(scheme_.mean) {
+  const auto where = fs::canonical(folder()).string();
   std::map<std::size_t, Key> pictures;
-  for (const auto& frame : frames_) {
-    const auto& clip = clips_[frame.clip];
-    auto& key = pictures[frame.clip];
-    if (!key) {
-      key = clip.video().source->key();
-      if (fs::exists(folder() / clip.id)) check_writable(folder() / clip.id);
+  for (const auto& [c, number, phone] : frames_) {
+    const auto& id = clips_[c].id;
+    if (!pictures.contains(c)) {
+      pictures[c] = clips_[c].video().source->key();
+      if (fs::exists(folder() / id)) check_writable(folder() / id);
     }
-    keys_.push_back(KeyMaker()
-                        .add(fs::absolute(folder()).string())
-                        .add(scheme_name_)
-                        .add(clip.id)
-                        .add(key)
-                        .add(std::to_string(frame.number))
-                        .key()
-                        .str());
+    KeyMaker maker;
+    maker.add(where).add(scheme_name_).add(id).add(pictures[c]).add(std::to_string(number));
+    keys_.push_back(maker.key().str());
   }
 }
 

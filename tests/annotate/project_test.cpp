@@ -107,7 +107,9 @@ TEST_F(ProjectTest, AKeyNamesTheFrameWhateverElseIsChosen) {
   std::string key;
   std::pair<std::string, std::int64_t> named;
   {
+    manifest_ = path("./manifest.json");
     const auto project = open({.frames = 3});
+    manifest_ = path("manifest.json");
     key = project->key(1);
     named = {project->clip(1), project->frames()[1].number};
   }
@@ -270,6 +272,10 @@ TEST_F(ProjectTest, OneProcessAtATimeAnnotates) {
 TEST_F(ProjectTest, TheManifestGivesTheAnnotatedFramesToATrainingGraph) {
   const auto project = open({.frames = 3});
   for (std::size_t f = 0; f < 3; ++f) finish(*project, f);
+  const auto number = project->frames()[0].number;
+  const auto clip = project->folder() / project->clip(0);
+  fs::rename(clip / fmt::format("{:06}.pts", number), clip / fmt::format("{}.PTS", number));
+  EXPECT_TRUE(project->kept(0).annotation);
   auto stream = Manifest{{manifest_}}();
   std::size_t whole = 0;
   while (auto item = stream.next())
