@@ -457,7 +457,8 @@ const beginnings = {
 
 function state_text() {
   if (current?.state === "new") return beginnings[current.by] ?? "";
-  if (current?.state === "broken") return `${current.reason}${ready() ? "; a change begins the frame anew and puts the file aside" : ""}`;
+  if (current?.state === "broken")
+    return current.reason + (ready() ? "; a change begins the frame anew and puts the file aside" : "");
   return current?.done ? "done, saved" : "draft, saved";
 }
 

@@ -124,8 +124,8 @@ def annotate(program, manifest, grid, frames, within):
             wait_for(lambda: browser.run("return document.getElementById('progress').textContent") == done, done)
             wait_for(ready, "the next frame")
             drags = [now - then for now, then in zip((hand.whole, hand.groups, hand.points), before)]
-            print(f"| {n} | {by} | {' | '.join(map(str, drags))} | {left:.2f} px | {time.monotonic() - pressed:.2f} s |",
-                  flush=True)
+            took = time.monotonic() - pressed
+            print(f"| {n} | {by} | {' | '.join(map(str, drags))} | {left:.2f} px | {took:.2f} s |", flush=True)
         print(f"drags: {hand.whole} of the face, {hand.groups} of groups, {hand.points} of points; "
               f"{time.monotonic() - start:.0f} s with a hand that takes no time")
     finally:
