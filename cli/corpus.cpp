@@ -13,6 +13,7 @@
 #include "graph/output_file.h"
 #include "nodes/corpus/manifest_file.h"
 #include "nodes/corpus/new_manifest.h"
+#include "nodes/corpus/text.h"
 #include "nodes/types/median.h"
 #include "nodes/types/recording.h"
 #include "nodes/types/visemes.h"
@@ -268,6 +269,8 @@ void check_source(const std::string& source) {
   const fs::path folder = source;
   if (!fs::exists(source))
     throw std::invalid_argument(source + ": there is no such manifest, nor folder of the GRID corpus");
+  if (!is_utf8(fs::absolute(source).string()))
+    throw std::invalid_argument(source + ": this name, or that of a folder it lies in, is not UTF-8; rename it");
   if (!fs::is_directory(source) || fs::exists(folder / "split.json")) return;
   if (fs::exists(folder / "manifest.json"))
     throw std::invalid_argument(
@@ -407,7 +410,8 @@ int check_corpus(const CorpusCommand& command, RunCommand run, const Registry& r
   const Outcome outcome = run_graph(*graph, run);
   if (!outcome.result) return outcome.code;
   const Json report = corpus_report(findings_of(*outcome.result, annotated));
-  fmt::print("{}", command.json ? report.dump(1) + "\n" : report_text(report));
+  fmt::print("{}",
+             command.json ? report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n" : report_text(report));
   return report["clips"].empty() || !report["unread"].empty() ? failed : outcome.code;
 }
 

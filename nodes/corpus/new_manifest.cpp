@@ -30,11 +30,6 @@ bool has_ending(const fs::path& path, const char* const (&endings)[N]) {
   return std::find(std::begin(endings), std::end(endings), ending_of(path)) != std::end(endings);
 }
 
-/// Names of files in a manifest are JSON, which is UTF-8.
-bool is_utf8(const std::string& text) try { return Json(text).dump(), true; } catch (const Json::type_error&) {
-  return false;
-}
-
 bool is_landmark_table(const fs::path& file) {
   const auto lines = lines_of(read_text_file(file.string()));
   const auto names = lines.empty() ? std::vector<std::string>{} : split(lines[0].text, ',');
@@ -104,6 +99,7 @@ void list(const fs::path& folder, std::vector<fs::path>& all, std::vector<std::s
 void sort_in(const fs::path& path, const fs::path& folder, Groups& groups, std::vector<std::string>& notes) try {
   constexpr std::string_view marks = "-landmarks";
   if (fs::is_regular_file(path)) return sort_in_file(path, folder, groups, notes);
+  if (!fs::is_directory(path)) return;
   const auto name = name_of(path, folder, true);
   if (name.ends_with(marks))
     groups[name.substr(0, name.size() - marks.size())].landmarks = path;

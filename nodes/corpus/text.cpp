@@ -11,6 +11,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "graph/json.h"
+
 namespace talkgraph {
 namespace {
 
@@ -57,6 +59,10 @@ std::string read_text_file(const std::string& path) {
   if (text.starts_with("\xff\xfe")) return from_utf16(std::string_view(text).substr(2), false);
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
   return text;
+}
+
+bool is_utf8(const std::string& text) try { return Json(text).dump(), true; } catch (const Json::type_error&) {
+  return false;
 }
 
 std::vector<TextLine> lines_of(std::string_view text) {

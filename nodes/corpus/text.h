@@ -16,6 +16,8 @@ struct TextLine {
 /// A text file as UTF-8: UTF-16 with a byte order mark is converted, the mark is
 /// taken off. Throws std::runtime_error naming the file if it cannot be read.
 std::string read_text_file(const std::string& path);
+/// Whether JSON can hold a text as it is: names of files may be of other bytes.
+bool is_utf8(const std::string& text);
 std::vector<TextLine> lines_of(std::string_view text);
 std::vector<std::string> split(std::string_view line, char separator);
 /// Words between blanks.

@@ -111,6 +111,9 @@ std::vector<bool> chosen_by_ranking(const Table& ranking, double above, Eigen::I
   std::vector<int> style;
   for (std::size_t r = 0; r < ranking.rows.size(); ++r)
     if (ranking.cells[r][static_cast<std::size_t>(column)] >= above) style.push_back(std::stoi(ranking.rows[r]));
+  if (std::ssize(style) == count)
+    throw std::runtime_error(
+        fmt::format("the ranking calls all {} components style, which leaves no speech: set \"above\" higher", count));
   return chosen_by_number(style, count);
 }
 
@@ -154,10 +157,6 @@ RemoveStyle::Out RemoveStyle::operator()(const IndependentComponents& components
   if (!track.values.allFinite()) throw std::runtime_error("a track with NaN or infinite values has no components");
   const auto is_style = style.empty() && ranking ? chosen_by_ranking(*ranking, above, components.count())
                                                  : chosen_by_number(style, components.count());
-  if (std::find(is_style.begin(), is_style.end(), false) == is_style.end())
-    throw std::runtime_error(
-        fmt::format("all {} components are called style, which leaves no speech: name fewer, or set \"above\" higher",
-                    is_style.size()));
   Eigen::MatrixXd u = components.of(track.values);
   for (Eigen::Index k = 0; k < u.cols(); ++k)
     if (is_style[static_cast<std::size_t>(k)]) u.col(k).setZero();

@@ -37,8 +37,8 @@ void describe(Description<RankStyle>& d);
 /// A u (thesis §3.4.1). Style are the components named in `style` (from 1),
 /// and, if a ranking is given and none is named, those whose "style" there is
 /// at least `above`. Throws std::runtime_error on numbers that no component
-/// has, a ranking of other components, values that are not finite, and if all
-/// components are style.
+/// has, a ranking of other components, values that are not finite, and if the
+/// ranking calls all components style.
 struct RemoveStyle {
   std::vector<int> style;
   double above = 0.9;

@@ -200,6 +200,8 @@ TEST(Corpus, SaysWhatIsNotThere) {
   EXPECT_THAT(error(), HasSubstr("its manifest is " + videos.file("manifest.json")));
   command.source = videos.file("manifest.json");
   EXPECT_THAT(error(), HasSubstr("manifest.json:2:1: error: unknown member \"clip\""));
+  command.source = videos.write("caf\xe9/manifest.json", "{}");
+  EXPECT_THAT(error(), HasSubstr("is not UTF-8; rename it"));
   command.source = "/nowhere";
   EXPECT_THROW(new_corpus(command), std::runtime_error);
   const test::TemporaryFolder folder;

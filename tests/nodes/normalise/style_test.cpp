@@ -156,7 +156,6 @@ TEST(RemoveStyle, LeavesSomeSpeech) {
       one{"", "component", {"style"}, {"2", "1"}, {{1}, {0.5}}};
   EXPECT_EQ(RemoveStyle{}(c, t, &one).normalised.values, (Eigen::MatrixXd(2, 2) << 1, 0, 3, 0).finished());
   EXPECT_THROW(RemoveStyle{}(c, t, &all), std::runtime_error);
-  EXPECT_THROW((RemoveStyle{.style = {1, 2}}(c, t, nullptr)), std::runtime_error);
 }
 
 }  // namespace
