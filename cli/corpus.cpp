@@ -234,14 +234,16 @@ std::string offset_text(const Json& offset) {
 
 /// A table of all clips, a line each.
 std::string clip_table(const Json& report) {
-  std::string out = fmt::format("{:<16} {:<11} {:>8} {:>8} {:>9} {:>8} {:>8}\n", "clip", "split", "sound s", "frames",
-                                "frames/s", "damaged", "lag");
+  std::size_t width = 16;
+  for (const auto& clip : report["clips"]) width = std::max(width, clip["id"].get_ref<const std::string&>().size());
+  std::string out = fmt::format("{:<{}} {:<11} {:>8} {:>8} {:>9} {:>8} {:>8}\n", "clip", width, "split", "sound s",
+                                "frames", "frames/s", "damaged", "lag");
   for (const auto& clip : report["clips"]) {
     const auto number = [&](const char* name, const char* format) {
       const auto& f = clip["findings"];
       return f.contains(name) ? fmt::format(fmt::runtime(format), f[name].get<double>()) : std::string("-");
     };
-    out += fmt::format("{:<16} {:<11} {:>8} {:>8} {:>9} {:>8} {:>8}\n", clip["id"].get<std::string>(),
+    out += fmt::format("{:<{}} {:<11} {:>8} {:>8} {:>9} {:>8} {:>8}\n", clip["id"].get<std::string>(), width,
                        clip["split"].get<std::string>(), number("sound_seconds", "{:.2f}"), number("frames", "{:g}"),
                        number("fps", "{:.6g}"), number("damaged", "{:g}"),
                        clip["lag"].is_null() ? "-" : fmt::format("{:+d}", clip["lag"].get<int>()));
