@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -47,6 +48,23 @@ std::vector<Pyramid> pyramids(const Prototypes& prototypes) {
 Triangles triangles_of(const std::string& scheme, const Shape& mean) {
   const auto found = find_scheme(scheme);
   return found && found->triangles.rows() > 0 ? scheme_of(scheme, mean.rows()).triangles : delaunay(mean);
+}
+
+/// The shape that textures are warped to: where the scheme knows the inner lips, the mean of the openest tenth of the
+/// prototypes, whose teeth have room in it; else the mean shape.
+Shape shape_of_textures(const AppearanceModel& model, std::vector<Shape> aligned) {
+  const auto scheme = find_scheme(model.scheme);
+  if (!scheme || scheme->points() != model.points() || !scheme->names.contains("inner_top") ||
+      !scheme->names.contains("inner_bottom"))
+    return model.mean_shape;
+  const auto gap = [top = scheme->point("inner_top"), bottom = scheme->point("inner_bottom")](const Shape& s) {
+    return s(bottom, 1) - s(top, 1);
+  };
+  std::stable_sort(aligned.begin(), aligned.end(), [&](const Shape& a, const Shape& b) { return gap(a) > gap(b); });
+  aligned.resize((aligned.size() + 9) / 10);
+  Shape sum = Shape::Zero(model.points(), 2);
+  for (const Shape& shape : aligned) sum += shape;
+  return sum / static_cast<double>(aligned.size());
 }
 
 struct Textures {
@@ -141,7 +159,8 @@ AppearanceModel BuildAppearance::operator()(const Prototypes& prototypes, Contex
   context.progress(0.1);
 
   model.levels.resize(1);
-  model.levels[0].raster = make_raster(model.mean_shape, model.triangles, 1);
+  const Shape open = shape_of_textures(model, aligned.shapes);
+  model.levels[0].raster = make_raster(open, model.triangles, 1);
   const auto finest = sample_all(pictures, prototypes.shapes, Sampler(model.levels[0].raster, model.triangles));
   const auto textures = pca(finest.columns, retain_texture);
   model.texture_modes = share(textures.modes.cast<float>());
@@ -165,7 +184,7 @@ AppearanceModel BuildAppearance::operator()(const Prototypes& prototypes, Contex
   directions << model.shape_modes, pose_directions(model.mean_shape);
   for (int l = 0; l < levels; ++l) {
     context.check_cancelled();
-    if (l > 0) model.levels.push_back({make_raster(model.mean_shape, model.triangles, std::exp2(-l)), {}, {}, {}});
+    if (l > 0) model.levels.push_back({make_raster(open, model.triangles, std::exp2(-l)), {}, {}, {}});
     auto& level = model.levels[static_cast<std::size_t>(l)];
     const Sampler sample(level.raster, model.triangles);
     const auto sampled = l > 0 ? sample_all(pictures, prototypes.shapes, sample) : finest;
@@ -184,7 +203,7 @@ AppearanceModel BuildAppearance::operator()(const Prototypes& prototypes, Contex
 }
 
 void describe(Description<BuildAppearance>& d) {
-  d.type("face.build").version(3).summary("builds an active appearance model from pictures with landmarks");
+  d.type("face.build").version(4).summary("builds an active appearance model from pictures with landmarks");
   d.source("Thesis §3.1, §3.4, Eqns 3.11-3.21; docs/method.md §2").stored();
   d.input("prototypes", "pictures with landmarks").output("model", "shape, texture and their combined modes");
   d.param("width", &BuildAppearance::width)

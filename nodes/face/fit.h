@@ -24,7 +24,7 @@ struct Fit {
 Pose small_pose(const Eigen::Vector4d& q);
 
 /// Where the derivative of the texture by shape and pose comes from: measured once on the prototypes, or the
-/// gradient of the model's own texture as it is.
+/// gradient of the model's own texture as it is. Steps are taken forward with either (docs/method.md §2).
 enum class FitMethod { fixed_jacobian, inverse_compositional };
 template <>
 inline constexpr EnumNames<FitMethod, 2> enum_names<FitMethod>{

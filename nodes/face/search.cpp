@@ -18,11 +18,13 @@ Template coarse_template(const AppearanceModel& model) {
   const auto& level = model.levels.back();
   const auto pixels = static_cast<std::size_t>(level.raster.size());
   const std::size_t stride = std::max<std::size_t>(1, pixels / 300);
+  const auto onto_mean = affine_maps(level.raster.points, model.mean_shape, model.triangles);
   Template t;
   std::vector<float> values;
   for (std::size_t i = 0; i < pixels; i += stride) {
-    const Eigen::Vector2d place(level.raster.x[i], level.raster.y[i]);
-    t.places.push_back((place / level.raster.scale + level.raster.origin).cast<float>());
+    const Affine& m = onto_mean[static_cast<std::size_t>(level.raster.triangle[i])];
+    const auto x = static_cast<float>(level.raster.x[i]), y = static_cast<float>(level.raster.y[i]);
+    t.places.emplace_back(m.a * x + m.b * y + m.c, m.d * x + m.e * y + m.f);
     for (std::size_t k = 0; k < 3; ++k) values.push_back((*level.mean)(static_cast<Eigen::Index>(3 * i + k), 0));
   }
   t.values = Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));

@@ -152,7 +152,7 @@ FaceTrack TrackFace::operator()(const AppearanceModel& model, const Video& video
 }
 
 void describe(Description<TrackFace>& d) {
-  d.type("face.track").version(4).summary("follows the face through a clip with the model alone");
+  d.type("face.track").version(5).summary("follows the face through a clip with the model alone");
   d.source("Thesis §3.1.4, Algorithm 1; docs/method.md §2").stored();
   d.input("model", "of the face")
       .input("video", "a clip of that speaker")
@@ -160,7 +160,8 @@ void describe(Description<TrackFace>& d) {
   d.param("fitter", &TrackFace::fitter)
       .doc(
           "fixed_jacobian: the texture's derivative as measured on the prototypes (Algorithm 1); "
-          "inverse_compositional: from the gradient of the model's texture as it is at each step");
+          "inverse_compositional: from the gradient of the model's texture as it is at each step; either takes its "
+          "steps forward");
   d.param("lost_above", &TrackFace::lost_above)
       .positive()
       .doc(

@@ -11,7 +11,7 @@ namespace talkgraph {
 
 /// Follows the face through a clip with the model alone. The first frame is
 /// searched on a grid of mean-shape windows, later ones start from the last
-/// good one; where the residual exceeds the threshold the frame is searched
+/// good one, doubtful fits from all sides of it too; where the residual exceeds the threshold the frame is searched
 /// anew, and if that fails it is lost, with confidence 0. Lost and damaged frames get parameters
 /// and pose interpolated between their good neighbours (copied at the ends);
 /// with no good frame at all, the mean face in the middle of the picture.

@@ -72,6 +72,21 @@ TEST(Pipelines, LoadAgainFromWhatARunFolderKeeps) {
   }
 }
 
+TEST(Pipelines, OfTheSourcesCorporaLearnAsItDid) {
+  const Registry registry = all_nodes();
+  for (const auto& [name, dimension] : {std::pair{"lips.json", 5}, {"demnow.json", 4}}) {
+    Diagnostics diagnostics;
+    const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/" + std::string(name), registry, diagnostics);
+    ASSERT_TRUE(graph) << diagnostics.str();
+    const Json& nodes = graph->resolved.at("nodes");
+    const Json& state = nodes.at("face/learnt/sgpdm").at("params");
+    EXPECT_EQ(state.at("latent_dimension"), dimension);
+    EXPECT_EQ(state.at("inducing"), 100);
+    EXPECT_EQ(state.at("dynamics_inverse_width"), 1000);
+    EXPECT_EQ(nodes.at("face/learnt/contexts").at("params").at("order"), 6);
+  }
+}
+
 // Each choice of speech parameters is one setting for training, synthesis and the graph that the model speaks with.
 TEST(Pipelines, SpeakWithTheSpeechParametersOfTraining) {
   const Registry registry = all_nodes();

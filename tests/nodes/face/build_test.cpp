@@ -88,6 +88,23 @@ TEST(BuildAppearance, TakesTheTrianglesOfTheScheme) {
   EXPECT_THROW(BuildAppearance{}(prototypes, context), std::runtime_error) << "the scheme has more points";
 }
 
+TEST(BuildAppearance, GivesTexturesRoomBetweenTheLips) {
+  auto prototypes = test::synthetic_prototypes();
+  const auto plain = build(prototypes);
+  std::string mean;
+  for (Eigen::Index i = 0; i < prototypes.shapes[0].rows(); ++i)
+    mean += fmt::format("{}[{}, {}]", i ? ", " : "", prototypes.shapes[0](i, 0), prototypes.shapes[0](i, 1));
+  prototypes.scheme =
+      fmt::format(R"({{"name": "lips", "names": {{"inner_top": 34, "inner_bottom": 30}}, "mean": [{}]}})", mean);
+  const auto roomy = build(prototypes);
+  const auto gap = [](const Shape& points) { return points(30, 1) - points(34, 1); };
+  EXPECT_EQ(roomy.mean_shape, plain.mean_shape);
+  EXPECT_NEAR(gap(plain.levels[0].raster.points), gap(plain.mean_shape), 1e-9);
+  EXPECT_GT(gap(roomy.levels[0].raster.points), 1.3 * gap(plain.levels[0].raster.points));
+  for (const auto& level : roomy.levels)
+    EXPECT_NEAR(gap(level.raster.points), level.raster.scale * gap(roomy.levels[0].raster.points), 1e-9);
+}
+
 TEST(BuildAppearance, OnePrototypeGivesARigidModel) {
   auto p = test::synthetic_prototypes();
   p.images.resize(1);

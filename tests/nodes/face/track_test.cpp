@@ -93,6 +93,21 @@ TEST(TrackFace, FindsTheFaceAgainAfterACut) {
   EXPECT_LT(test::rms_distance(t.shapes.back(), test::landmarks(moved)), 0.5);
 }
 
+TEST(TrackFace, TriesADoubtfulFitFromBeside) {
+  test::SyntheticFace face;
+  face.open = 0.3;
+  face.x = 64;
+  std::vector<cv::Mat> frames = {test::draw(face)};
+  face.x = 30;  // the picture ends in the cheek
+  frames.push_back(test::draw(face));
+  const auto distance = [&](double reach) {
+    TrackFace node;
+    node.reach = reach;
+    return test::rms_distance(track(video_from_frames(frames, Rational(25)), node).shapes[1], test::landmarks(face));
+  };
+  EXPECT_LT(distance(0.5), 0.75 * distance(0));
+}
+
 TEST(TrackFace, OneFrame) {
   const auto t = track(video_from_frames(talking(1), Rational(30000, 1001)));
   ASSERT_EQ(t.lost, std::vector<std::int64_t>{0});
