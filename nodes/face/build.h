@@ -8,7 +8,8 @@
 namespace talkgraph {
 
 /// Active appearance model of the prototypes: Procrustes alignment, Delaunay
-/// triangles (unless the point scheme has its own), colour texture warped to the mean shape, PCA of shapes, of
+/// triangles (unless the point scheme has its own), colour texture warped to a shape whose
+/// mouth is open if the scheme names the inner lips (inner_top, inner_bottom), else to the mean, PCA of shapes, of
 /// textures and of both, and the matrices that fitting uses (docs/method.md §2, Eqns
 /// 3.11-3.21). Throws std::runtime_error on no prototypes, point counts that
 /// differ, a landmark that is not a number, or a flat picture. A single

@@ -163,14 +163,14 @@ Triangles delaunay(const Shape& points) {
   return triangles;
 }
 
-Raster make_raster(const Shape& mean_shape, const Triangles& triangles, double scale) {
+Raster make_raster(const Shape& shape, const Triangles& triangles, double scale) {
   Raster raster;
   raster.scale = scale;
-  const Eigen::RowVector2d low = mean_shape.colwise().minCoeff(), high = mean_shape.colwise().maxCoeff();
+  const Eigen::RowVector2d low = shape.colwise().minCoeff(), high = shape.colwise().maxCoeff();
   raster.origin = low.transpose().array() - 1 / scale;
   raster.width = static_cast<int>(std::ceil((high.x() - low.x()) * scale)) + 3;
   raster.height = static_cast<int>(std::ceil((high.y() - low.y()) * scale)) + 3;
-  raster.points = (mean_shape.rowwise() - raster.origin.transpose()) * scale;
+  raster.points = (shape.rowwise() - raster.origin.transpose()) * scale;
   Eigen::MatrixXi taken = Eigen::MatrixXi::Constant(raster.height, raster.width, -1);
   for (int t = 0; t < triangles.rows(); ++t)
     mark(raster.points.row(triangles(t, 0)), raster.points.row(triangles(t, 1)), raster.points.row(triangles(t, 2)), t,

@@ -39,9 +39,9 @@ Aligned procrustes(const std::vector<Shape>& shapes, double width);
 /// if there is no triangle.
 Triangles delaunay(const Shape& points);
 
-/// The pixels inside the triangles of a mean shape, at `scale` raster pixels
+/// The pixels inside the triangles of a shape, at `scale` raster pixels
 /// per unit, with a margin of one pixel.
-Raster make_raster(const Shape& mean_shape, const Triangles& triangles, double scale);
+Raster make_raster(const Shape& shape, const Triangles& triangles, double scale);
 
 /// x' = a x + b y + c, y' = d x + e y + f
 struct Affine {

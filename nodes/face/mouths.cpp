@@ -105,7 +105,7 @@ void describe(Description<KeepMouths>& d) {
   d.input("model", "of the face")
       .input("videos", "clips")
       .input("tracks", "of the clips")
-      .output("mouths", "pictures warped to the mean shape, with their appearance parameters");
+      .output("mouths", "pictures warped as the model's textures are, with their appearance parameters");
   d.param("points", &KeepMouths::points)
       .at_least(0)
       .doc("landmarks around the mouth; empty: outer and inner lips of the point scheme");

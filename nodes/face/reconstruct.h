@@ -16,7 +16,7 @@ struct Reconstruction {
   Shape shape;           ///< the shape of c, at the face's place in the picture
   cv::Mat picture;       ///< the given picture with the face of c drawn upon it
   double landmarks;      ///< root mean square distance to the given ones, pixels of the picture
-  double texture_error;  ///< root mean square, grey levels, on the mean shape
+  double texture_error;  ///< root mean square, grey levels, over the raster
   double psnr;           ///< of the face drawn upon the picture, over the pixels drawn, decibels; at most 100
 };
 

@@ -16,13 +16,13 @@ using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3>;
 /// A large matrix that copies of a model share.
 using SharedMatrix = std::shared_ptr<const Eigen::MatrixXf>;
 
-/// The pixels inside the mean shape at one resolution, row by row, and the
-/// triangle that each lies in. Raster position = (model position - origin) · scale.
+/// The pixels inside the shape that textures are warped to at one resolution, row
+/// by row, and the triangle that each lies in. Raster position = (model position - origin) · scale.
 struct Raster {
   int width = 0, height = 0;
   double scale = 1;
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();
-  Shape points;  ///< the mean shape, raster positions
+  Shape points;  ///< of that shape, raster positions
   std::vector<int> x, y, triangle;
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(x.size()); }

@@ -9,7 +9,7 @@
 
 namespace talkgraph {
 
-/// Mouths of real frames, each warped to the mean shape of an appearance model
+/// Mouths of real frames, each warped as the textures of an appearance model are
 /// and brought to the model's average light. There may be none.
 struct Mouths {
   std::vector<int> points;      ///< landmarks around the mouth
