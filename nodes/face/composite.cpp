@@ -295,7 +295,7 @@ Video CompositeFace::operator()(const AppearanceModel& model, const Track& param
 }
 
 void describe(Description<CompositeFace>& d) {
-  d.type("face.composite").version(4).summary("draws a synthesised face on the frames of a real clip");
+  d.type("face.composite").version(5).summary("draws a synthesised face on the frames of a real clip");
   d.source("Thesis §3.1.3, §6.3.5; docs/method.md §2");
   d.input("model", "of the face")
       .input("parameters", "appearance parameters c")

@@ -121,7 +121,7 @@ Video RenderFace::operator()(const AppearanceModel& model, const Track& paramete
 }
 
 void describe(Description<RenderFace>& d) {
-  d.type("face.render").version(2).summary("the face of appearance parameters alone, on a plain background");
+  d.type("face.render").version(3).summary("the face of appearance parameters alone, on a plain background");
   d.source("Thesis Eqn 3.18, §6.3.5; docs/method.md §2");
   d.input("model", "of the face")
       .input("parameters", "appearance parameters c")
