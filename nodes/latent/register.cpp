@@ -1,9 +1,13 @@
 #include "nodes/latent/register.h"
 
+#include "nodes/latent/gpdm.h"
 #include "nodes/latent/sgpdm.h"
 
 namespace talkgraph {
 
-void register_latent(Registry& registry) { registry.add<TrainSgpdm>(); }
+void register_latent(Registry& registry) {
+  registry.add<TrainGpdm>();
+  registry.add<TrainSgpdm>();
+}
 
 }  // namespace talkgraph

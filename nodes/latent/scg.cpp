@@ -1,91 +1,128 @@
 #include "nodes/latent/scg.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace talkgraph {
 
-std::string str(StopReason reason) {
-  switch (reason) {
-    case StopReason::converged:
-      return "converged";
-    case StopReason::flat:
-      return "gradient vanished";
-    case StopReason::iterations:
-      return "iteration limit";
-    case StopReason::stalled:
-      return "no step lowers the cost";
-    case StopReason::failed:
-      break;
-  }
-  return "cost cannot be evaluated";
-}
+namespace {
 
-OptimiserReport ScaledConjugateGradients::minimise(Objective& objective, Eigen::VectorXd& x) const {
-  constexpr double least_scale = 1e-15, most_scale = 1e20, curvature_step = 1e-4;
-  OptimiserReport report;
-  const auto evaluate = [&](const Eigen::VectorXd& at, double& cost, Eigen::VectorXd& gradient) {
-    ++report.evaluations;
-    return objective.evaluate(at, cost, &gradient) && std::isfinite(cost) && gradient.allFinite();
-  };
+constexpr double least_scale = 1e-15, most_scale = 1e20, curvature_step = 1e-4;
 
-  Eigen::VectorXd gradient(x.size()), trial_gradient(x.size()), trial(x.size());
-  if (!evaluate(x, report.cost, gradient)) return report;
-  Eigen::VectorXd direction = -gradient;
-  double scale = 1, slope = 0, length = 0, curvature = 0;
-  bool moved = true;
-  Eigen::Index successes = 0;
+/// One run, on a state that is complete between iterations.
+class Run {
+ public:
+  Run(const ScaledConjugateGradients& options, Objective& objective, OptimiserState& state)
+      : options_(options), objective_(objective), s_(state), trial_(state.parameters.size()) {}
 
-  for (report.iterations = 0; report.iterations < iterations; ++report.iterations) {
-    if (moved) {
-      slope = direction.dot(gradient);
-      if (slope >= 0) {
-        direction = -gradient;
-        slope = -gradient.squaredNorm();
+  void operator()() {
+    OptimiserReport& report = s_.report;
+    if (s_.gradient.size() == 0 && !begin()) {
+      report.reason = StopReason::failed;
+      return;
+    }
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(options_.seconds);
+    report.reason = StopReason::iterations;
+    while (report.iterations < options_.iterations && step()) {
+      ++report.iterations;
+      report.gradient_norm = s_.gradient.lpNorm<Eigen::Infinity>();
+      report.trace.push_back(report.cost);
+      if (options_.on_iteration) options_.on_iteration(report.iterations, report.cost);
+      if (report.reason != StopReason::iterations) return;
+      if (std::chrono::steady_clock::now() > end) {
+        report.reason = StopReason::time;
+        return;
       }
-      length = direction.squaredNorm();
-      if (length < 1e-20) return report.reason = StopReason::flat, report;
-      const double sigma = curvature_step / std::sqrt(length);
-      double cost = 0;
-      trial = x + sigma * direction;
-      curvature = evaluate(trial, cost, trial_gradient) ? direction.dot(trial_gradient - gradient) / sigma : 0;
     }
-    double bend = curvature + scale * length;
-    if (bend <= 0) {
-      bend = scale * length;
-      scale -= curvature / length;
+  }
+
+ private:
+  bool evaluate(const Eigen::VectorXd& at, double& cost, Eigen::VectorXd& gradient) {
+    ++s_.report.evaluations;
+    return objective_.evaluate(at, cost, &gradient) && std::isfinite(cost) && gradient.allFinite();
+  }
+
+  bool begin() {
+    Eigen::VectorXd gradient(trial_.size());
+    if (!evaluate(s_.parameters, s_.report.cost, gradient)) return false;
+    s_.direction = -gradient;
+    s_.gradient.swap(gradient);
+    s_.report.gradient_norm = s_.gradient.lpNorm<Eigen::Infinity>();
+    if (s_.report.trace.empty()) s_.report.trace.push_back(s_.report.cost);
+    return true;
+  }
+
+  /// Slope and curvature along the direction. False where it has no length.
+  bool look_along_direction() {
+    s_.slope = s_.direction.dot(s_.gradient);
+    if (s_.slope >= 0) {
+      s_.direction = -s_.gradient;
+      s_.slope = -s_.gradient.squaredNorm();
     }
-    const double step = -slope / bend;
-    trial = x + step * direction;
+    s_.length = s_.direction.squaredNorm();
+    if (s_.length < 1e-20) return false;
+    const double sigma = curvature_step / std::sqrt(s_.length);
     double cost = 0;
-    const bool evaluated = evaluate(trial, cost, trial_gradient);
-    const double agreement = evaluated ? 2 * (cost - report.cost) / (step * slope) : -1;
-    moved = agreement >= 0;
-    if (moved) {
-      const double decrease = report.cost - cost;
-      const double change = step * direction.cwiseAbs().maxCoeff();
-      const double mixing = (gradient - trial_gradient).dot(trial_gradient) / slope;
-      x.swap(trial);
-      gradient.swap(trial_gradient);
-      report.cost = cost;
-      if (on_iteration) on_iteration(report.iterations + 1, cost);
-      if (change < step_tolerance && decrease < cost_tolerance) {
-        ++report.iterations;
-        return report.reason = StopReason::converged, report;
-      }
-      if (++successes == x.size()) {
-        direction = -gradient;
-        successes = 0;
-      } else {
-        direction = mixing * direction - gradient;
-      }
-    }
-    if (agreement < 0.25) scale = std::min(4 * scale, most_scale);
-    if (agreement > 0.75) scale = std::max(0.5 * scale, least_scale);
-    if (scale >= most_scale) return report.reason = StopReason::stalled, report;
+    trial_ = s_.parameters + sigma * s_.direction;
+    s_.curvature =
+        evaluate(trial_, cost, trial_gradient_) ? s_.direction.dot(trial_gradient_ - s_.gradient) / sigma : 0;
+    return true;
   }
-  report.reason = StopReason::iterations;
-  return report;
+
+  /// One iteration. False where there is no direction; sets the reason where it is the last.
+  bool step() {
+    OptimiserReport& report = s_.report;
+    if (s_.moved && !look_along_direction()) {
+      report.reason = StopReason::flat;
+      return false;
+    }
+    double bend = s_.curvature + s_.scale * s_.length;
+    if (bend <= 0) {
+      bend = s_.scale * s_.length;
+      s_.scale -= s_.curvature / s_.length;
+    }
+    const double step = -s_.slope / bend;
+    trial_ = s_.parameters + step * s_.direction;
+    double cost = 0;
+    const bool evaluated = evaluate(trial_, cost, trial_gradient_);
+    const double agreement = evaluated ? 2 * (cost - report.cost) / (step * s_.slope) : -1;
+    s_.moved = agreement >= 0;
+    if (s_.moved) move(step, cost);
+    if (report.reason == StopReason::converged) return true;
+    if (agreement < 0.25) s_.scale = std::min(4 * s_.scale, most_scale);
+    if (agreement > 0.75) s_.scale = std::max(0.5 * s_.scale, least_scale);
+    if (s_.scale >= most_scale) report.reason = StopReason::stalled;
+    return true;
+  }
+
+  void move(double step, double cost) {
+    const double decrease = s_.report.cost - cost;
+    const double change = step * s_.direction.cwiseAbs().maxCoeff();
+    const double mixing = (s_.gradient - trial_gradient_).dot(trial_gradient_) / s_.slope;
+    s_.parameters.swap(trial_);
+    s_.gradient.swap(trial_gradient_);
+    s_.report.cost = cost;
+    if (change < options_.step_tolerance && decrease < options_.cost_tolerance)
+      s_.report.reason = StopReason::converged;
+    if (++s_.successes == s_.parameters.size()) {
+      s_.direction = -s_.gradient;
+      s_.successes = 0;
+    } else {
+      s_.direction = mixing * s_.direction - s_.gradient;
+    }
+  }
+
+  const ScaledConjugateGradients& options_;
+  Objective& objective_;
+  OptimiserState& s_;
+  Eigen::VectorXd trial_, trial_gradient_;
+};
+
+}  // namespace
+
+void ScaledConjugateGradients::minimise(Objective& objective, OptimiserState& state) const {
+  Run(*this, objective, state)();
 }
 
 }  // namespace talkgraph

@@ -8,40 +8,70 @@
 namespace talkgraph {
 
 SgpdmObjective::SgpdmObjective(SgpdmProblem problem) : problem_(std::move(problem)) {
+  find_steps();
+  lay_out();
+  fix();
+}
+
+void SgpdmObjective::find_steps() {
   Eigen::Index row = 0;
-  for (const auto length : problem_.lengths) {
-    first_.push_back(row);
-    for (std::int64_t t = 1; t < length; ++t) {
-      from_.push_back(row + t - 1);
-      to_.push_back(row + t);
+  for (const auto length : problem_.lengths)
+    for (std::int64_t t = 0; t < length; ++t, ++row) {
+      if (t > 0 && problem_.dynamics) {
+        from_.push_back(row - 1);
+        to_.push_back(row);
+      } else {
+        first_.push_back(row);
+      }
     }
-    row += length;
+}
+
+void SgpdmObjective::lay_out() {
+  for (Observations& o : problem_.observations) {
+    places_.push_back({.stream = &o.process, .observed = &o, .now = o.process.kernel, .outputs = {}, .gradient = {}});
+    places_.back().outputs = o.values.array().rowwise() / o.scale.array();
   }
-  std::vector<GpStream*> streams{&problem_.f, &problem_.g};
-  if (problem_.h) streams.push_back(&*problem_.h);
-  Eigen::Index size = problem_.latents.size();
-  for (GpStream* s : streams) {
-    places_.push_back({s, size, 0, {}, s->kernel});
-    size += s->inducing.size();
+  if (problem_.dynamics)
+    places_.push_back({.stream = &*problem_.dynamics, .now = problem_.dynamics->kernel, .outputs = {}, .gradient = {}});
+
+  Eigen::VectorXd latents = problem_.latents.reshaped();
+  if (problem_.back_constraint) latents = problem_.back_constraint->parameters();
+  Eigen::Index size = latent_size_ = latents.size();
+  for (Place& place : places_) {
+    place.inducing = size;
+    size += place.stream->inducing.size();
+  }
+  for (Place& place : places_) {
+    place.scale = size;
+    if (place.observed && place.observed->learn_scale) size += place.observed->scale.size();
   }
   for (Place& place : places_) {
     place.kernel = size;
     size += parameter_count(place.stream->kernel);
   }
   start_.resize(size);
-  start_.head(problem_.latents.size()) = problem_.latents.reshaped();
+  start_.head(latent_size_) = latents;
   for (const Place& place : places_) {
     start_.segment(place.inducing, place.stream->inducing.size()) = place.stream->inducing.reshaped();
     start_.segment(place.kernel, parameter_count(place.stream->kernel)) = log_parameters(place.stream->kernel);
+    if (place.observed && place.observed->learn_scale)
+      start_.segment(place.scale, place.observed->scale.size()) = place.observed->scale.array().log();
   }
-  fix();
 }
 
 void SgpdmObjective::fix() {
   free_.setOnes(start_.size());
+  noise_.setOnes(start_.size());
+  for (const Place& place : places_) {
+    if (place.observed && place.observed->learn_scale)
+      for (Eigen::Index c = 0; c < place.observed->scale.size(); ++c)
+        if (place.observed->values.col(c).isZero(0)) free_[place.scale + c] = 0;
+    Eigen::Index i = place.kernel;
+    for (const auto& parameter : parameter_names(place.stream->kernel)) noise_[i++] = parameter == "white" ? 0 : 1;
+  }
   for (const auto& name : problem_.fixed) {
     bool known = name == "latents" || name == "inducing";
-    if (name == "latents") free_.head(problem_.latents.size()).setZero();
+    if (name == "latents") free_.head(latent_size_).setZero();
     for (const Place& place : places_) {
       if (name == "inducing") free_.segment(place.inducing, place.stream->inducing.size()).setZero();
       Eigen::Index i = place.kernel;
@@ -53,33 +83,46 @@ void SgpdmObjective::fix() {
         ++i;
       }
     }
-    const bool absent_dynamics = !problem_.h && name.starts_with("dynamics.");
-    if (!known && !absent_dynamics)
-      throw std::invalid_argument("\"" + name +
-                                  "\" cannot be fixed: give latents, inducing, or audio, visual or dynamics followed "
-                                  "by .rbf_variance, .inverse_width, .linear, .bias or .white that its kernel has");
+    const bool absent_dynamics = !problem_.dynamics && name.starts_with("dynamics.");
+    if (known || absent_dynamics) continue;
+    std::string streams;
+    for (const Place& place : places_) streams += (streams.empty() ? "" : ", ") + place.stream->name;
+    throw std::invalid_argument("\"" + name + "\" cannot be fixed: give latents, inducing, or one of " + streams +
+                                " followed by .rbf_variance, .inverse_width, .linear, .bias or .white that its "
+                                "kernel has");
   }
-}
-
-SgpdmObjective::View SgpdmObjective::latent_view(const Eigen::VectorXd& p) const {
-  return {p.data(), problem_.latents.rows(), problem_.latents.cols()};
 }
 
 SgpdmObjective::View SgpdmObjective::inducing_view(const Place& place, const Eigen::VectorXd& p) const {
   return {p.data() + place.inducing, place.stream->inducing.rows(), problem_.latents.cols()};
 }
 
-void SgpdmObjective::gather(const View& x) {
-  in_.resize(static_cast<Eigen::Index>(from_.size()), x.cols());
-  out_.resize(in_.rows(), x.cols());
-  for (std::size_t i = 0; i < from_.size(); ++i) {
-    in_.row(static_cast<Eigen::Index>(i)) = x.row(from_[i]);
-    out_.row(static_cast<Eigen::Index>(i)) = x.row(to_[i]);
+void SgpdmObjective::place_latents(const Eigen::VectorXd& p) {
+  if (problem_.back_constraint)
+    x_ = problem_.back_constraint->compute(p.head(latent_size_));
+  else
+    x_ = p.head(latent_size_).reshaped(problem_.latents.rows(), problem_.latents.cols());
+}
+
+void SgpdmObjective::place_outputs(Place& place, const Eigen::VectorXd& p) const {
+  const Observations& o = *place.observed;
+  if (o.learn_scale)
+    place.outputs = o.values.array().rowwise() * (-p.segment(place.scale, o.scale.size()).array()).exp().transpose();
+}
+
+void SgpdmObjective::gather_steps() {
+  Eigen::MatrixXd& out = places_.back().outputs;
+  in_.resize(static_cast<Eigen::Index>(from_.size()), x_.cols());
+  out.resize(in_.rows(), x_.cols());
+  for (Eigen::Index i = 0; i < in_.rows(); ++i) {
+    in_.row(i) = x_.row(from_[static_cast<std::size_t>(i)]);
+    out.row(i) = x_.row(to_[static_cast<std::size_t>(i)]);
   }
+  if (problem_.form == DynamicsForm::difference) out -= in_;
 }
 
 double SgpdmObjective::stream_likelihood(Place& place, const Eigen::VectorXd& p, const ConstMatrix& x,
-                                         const ConstMatrix& y, Eigen::VectorXd* gradient) {
+                                         Eigen::VectorXd* gradient) {
   const GpStream& s = *place.stream;
   const Eigen::Index parameters = parameter_count(s.kernel);
   set_log_parameters(place.now, p.segment(place.kernel, parameters));
@@ -88,7 +131,7 @@ double SgpdmObjective::stream_likelihood(Place& place, const Eigen::VectorXd& p,
     g = &place.gradient;
     g->set_zero(x.rows(), s.inducing.rows(), x.cols(), parameters);
   }
-  const double value = s.likelihood->evaluate(place.now, x, inducing_view(place, p), y, g);
+  const double value = s.likelihood->evaluate(place.now, x, inducing_view(place, p), place.outputs, g);
   if (gradient) {
     gradient->segment(place.kernel, parameters) += s.weight * g->kernel;
     gradient->segment(place.inducing, s.inducing.size()) += s.weight * g->inducing.reshaped();
@@ -96,15 +139,47 @@ double SgpdmObjective::stream_likelihood(Place& place, const Eigen::VectorXd& p,
   return s.weight * value;
 }
 
-double SgpdmObjective::first_points(const View& x, double weight, Eigen::VectorXd* gradient) const {
-  const double d = static_cast<double>(x.cols());
-  double value = 0;
+double SgpdmObjective::observed_likelihood(Place& place, const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
+  const Observations& o = *place.observed;
+  const double weight = place.stream->weight, n = static_cast<double>(o.values.rows());
+  place_outputs(place, p);
+  const double value = stream_likelihood(place, p, x_, gradient);
+  if (gradient) {
+    x_gradient_ += weight * place.gradient.inputs;
+    if (o.learn_scale)
+      gradient->segment(place.scale, o.scale.size()).array() -=
+          weight * (place.gradient.outputs.cwiseProduct(place.outputs).colwise().sum().transpose().array() + n);
+  }
+  const double log_scale = o.learn_scale ? p.segment(place.scale, o.scale.size()).sum() : o.scale.array().log().sum();
+  return value - weight * n * log_scale;
+}
+
+double SgpdmObjective::dynamics_likelihood(Place& place, const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
+  gather_steps();
+  const double value = stream_likelihood(place, p, in_, gradient);
+  if (!gradient) return value;
+  const double weight = place.stream->weight;
+  GpGradient& g = place.gradient;
+  if (problem_.form == DynamicsForm::difference) g.inputs -= g.outputs;
+  for (Eigen::Index i = 0; i < in_.rows(); ++i) {
+    x_gradient_.row(from_[static_cast<std::size_t>(i)]) += weight * g.inputs.row(i);
+    x_gradient_.row(to_[static_cast<std::size_t>(i)]) += weight * g.outputs.row(i);
+  }
+  return value;
+}
+
+double SgpdmObjective::first_points(const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
+  const double weight = problem_.dynamics_weight, d = static_cast<double>(x_.cols()), v = first_variance(p);
+  double value = 0, by_variance = 0;
   for (const auto row : first_) {
-    value -= 0.5 * (d * std::log(2 * std::numbers::pi * problem_.first_variance) +
-                    x.row(row).squaredNorm() / problem_.first_variance);
-    if (!gradient) continue;
-    for (Eigen::Index c = 0; c < x.cols(); ++c)
-      (*gradient)[c * x.rows() + row] -= weight * x(row, c) / problem_.first_variance;
+    const double square = x_.row(row).squaredNorm();
+    value -= 0.5 * (d * std::log(2 * std::numbers::pi * v) + square / v);
+    by_variance += 0.5 * (square / v - d) / v;
+    if (gradient) x_gradient_.row(row) -= weight / v * x_.row(row);
+  }
+  if (gradient && !problem_.first_variance && problem_.dynamics) {
+    const Place& h = places_.back();
+    white_gradient(h.now, weight * by_variance, gradient->segment(h.kernel, parameter_count(h.now)));
   }
   return weight * value;
 }
@@ -119,28 +194,22 @@ double SgpdmObjective::hyperprior(const Eigen::VectorXd& p, Eigen::VectorXd* gra
 }
 
 double SgpdmObjective::log_likelihood(const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
-  if (gradient) gradient->setZero(p.size());
-  const View x = latent_view(p);
-  const double weight = problem_.dynamics_weight;
-  double value = hyperprior(p, gradient) + first_points(x, weight, gradient) - problem_.log_scale;
-  value += stream_likelihood(places_[0], p, x, problem_.audio, gradient);
-  value += stream_likelihood(places_[1], p, x, problem_.visual, gradient);
-  if (gradient)
-    for (const int i : {0, 1})
-      gradient->head(x.size()) += places_[i].stream->weight * places_[i].gradient.inputs.reshaped();
-  if (problem_.h) {
-    gather(x);
-    value += stream_likelihood(places_[2], p, in_, out_, gradient);
-    if (gradient) {
-      Eigen::Map<Eigen::MatrixXd> x_gradient(gradient->data(), x.rows(), x.cols());
-      for (std::size_t i = 0; i < from_.size(); ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        x_gradient.row(from_[i]) += problem_.h->weight * places_[2].gradient.inputs.row(row);
-        x_gradient.row(to_[i]) += problem_.h->weight * places_[2].gradient.outputs.row(row);
-      }
-    }
+  place_latents(p);
+  if (gradient) {
+    gradient->setZero(p.size());
+    x_gradient_.setZero(x_.rows(), x_.cols());
   }
-  if (gradient) gradient->array() *= free_.array();
+  double value = hyperprior(p, gradient);
+  for (Place& place : places_)
+    value += place.observed ? observed_likelihood(place, p, gradient) : dynamics_likelihood(place, p, gradient);
+  value += first_points(p, gradient);
+  if (!gradient) return value;
+  if (problem_.back_constraint)
+    problem_.back_constraint->gradient(x_gradient_, gradient->head(latent_size_));
+  else
+    gradient->head(latent_size_) = x_gradient_.reshaped();
+  gradient->array() *= free_.array();
+  if (noise_held_) gradient->array() *= noise_.array();
   return value;
 }
 
@@ -154,26 +223,44 @@ bool SgpdmObjective::evaluate(const Eigen::VectorXd& p, double& cost, Eigen::Vec
   }
 }
 
-Eigen::MatrixXd SgpdmObjective::latents(const Eigen::VectorXd& p) const { return latent_view(p); }
-
-GaussianProcess SgpdmObjective::posterior(Place& place, const Eigen::VectorXd& p, const ConstMatrix& x,
-                                          const ConstMatrix& y) {
-  set_log_parameters(place.now, p.segment(place.kernel, parameter_count(place.stream->kernel)));
-  return place.stream->likelihood->posterior(place.now, x, inducing_view(place, p), y);
+Eigen::MatrixXd SgpdmObjective::latents(const Eigen::VectorXd& p) {
+  place_latents(p);
+  return x_;
 }
 
-GaussianProcess SgpdmObjective::audio(const Eigen::VectorXd& p) {
-  return posterior(places_[0], p, latent_view(p), problem_.audio);
+GaussianProcess SgpdmObjective::posterior(Place& place, const Eigen::VectorXd& p, const ConstMatrix& x) {
+  set_log_parameters(place.now, p.segment(place.kernel, parameter_count(place.now)));
+  return place.stream->likelihood->posterior(place.now, x, inducing_view(place, p), place.outputs);
 }
 
-GaussianProcess SgpdmObjective::visual(const Eigen::VectorXd& p) {
-  return posterior(places_[1], p, latent_view(p), problem_.visual);
+GaussianProcess SgpdmObjective::process(std::size_t stream, const Eigen::VectorXd& p) {
+  Place& place = places_.at(stream);
+  const Observations& o = problem_.observations.at(stream);
+  place_latents(p);
+  place_outputs(place, p);
+  GaussianProcess gp = posterior(place, p, x_);
+  gp.scale = o.scale;
+  if (o.learn_scale) gp.scale = p.segment(place.scale, o.scale.size()).array().exp();
+  return gp;
 }
 
 std::optional<GaussianProcess> SgpdmObjective::dynamics(const Eigen::VectorXd& p) {
-  if (!problem_.h) return std::nullopt;
-  gather(latent_view(p));
-  return posterior(places_[2], p, in_, out_);
+  if (!problem_.dynamics) return std::nullopt;
+  place_latents(p);
+  gather_steps();
+  return posterior(places_.back(), p, in_);
+}
+
+std::optional<BackConstraint> SgpdmObjective::back_constraint(const Eigen::VectorXd& p) const {
+  if (!problem_.back_constraint) return std::nullopt;
+  return problem_.back_constraint->with(p.head(latent_size_));
+}
+
+double SgpdmObjective::first_variance(const Eigen::VectorXd& p) {
+  if (problem_.first_variance || !problem_.dynamics) return problem_.first_variance.value_or(1);
+  Place& h = places_.back();
+  set_log_parameters(h.now, p.segment(h.kernel, parameter_count(h.now)));
+  return white_variance(h.now);
 }
 
 double SgpdmObjective::jitter() const {

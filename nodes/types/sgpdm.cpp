@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "nodes/types/gpdm.h"
 #include "nodes/types/ssgpdm.h"
 
 namespace talkgraph {
@@ -34,6 +35,16 @@ KernelTerm restored(const StoredTerm& t) {
 }
 
 }  // namespace
+
+void fields(Archive& ar, HiddenUnits& u) {
+  ar("weights", u.weights);
+  ar("bias", u.bias);
+}
+
+void fields(Archive& ar, RbfUnits& u) {
+  ar("centres", u.centres);
+  ar("inverse_widths", u.inverse_widths);
+}
 
 /// One entry a term; the inverse widths of all terms stand one after another, `widths` of them a term.
 void fields(Archive& ar, Kernel& k) {
@@ -80,6 +91,19 @@ void fields(Archive& ar, GaussianProcess& g) {
   ar("scale", g.scale);
 }
 
+void fields(Archive& ar, BackConstraint& b) {
+  std::optional<HiddenUnits> hidden;
+  std::optional<RbfUnits> rbf;
+  if (const auto* units = std::get_if<HiddenUnits>(&b.units)) hidden = *units;
+  if (const auto* units = std::get_if<RbfUnits>(&b.units)) rbf = *units;
+  ar("hidden", hidden);
+  ar("rbf", rbf);
+  if (ar.loading() && hidden) b.units = std::move(*hidden);
+  if (ar.loading() && rbf) b.units = std::move(*rbf);
+  ar("weights", b.weights);
+  ar("bias", b.bias);
+}
+
 void fields(Archive& ar, Sgpdm& s) {
   ar("label", s.label);
   ar("latents", s.latents);
@@ -88,11 +112,29 @@ void fields(Archive& ar, Sgpdm& s) {
   ar("audio", s.audio);
   ar("visual", s.visual);
   ar("dynamics", s.dynamics);
+  ar("form", s.form);
+  ar("back_constraint", s.back_constraint);
   ar("dynamics_bias", s.dynamics_bias);
   ar("first_variance", s.first_variance);
   ar("log_likelihood", s.log_likelihood);
   ar("iterations", s.iterations);
   ar("jitter", s.jitter);
+  ar("trace", s.trace);
+}
+
+void fields(Archive& ar, Gpdm& g) {
+  ar("latents", g.latents);
+  ar("lengths", g.lengths);
+  ar("names", g.names);
+  ar("observations", g.observations);
+  ar("dynamics", g.dynamics);
+  ar("form", g.form);
+  ar("back_constraint", g.back_constraint);
+  ar("dynamics_bias", g.dynamics_bias);
+  ar("first_variance", g.first_variance);
+  ar("log_likelihood", g.log_likelihood);
+  ar("jitter", g.jitter);
+  ar("trace", g.trace);
 }
 
 void fields(Archive& ar, Ssgpdm& s) {

@@ -58,6 +58,30 @@ struct GaussianProcess {
 };
 void fields(Archive& ar, GaussianProcess& g);
 
+/// φ_h(y) = tanh(y · weights + bias): the hidden units of a perceptron.
+struct HiddenUnits {
+  Eigen::MatrixXd weights;  ///< D × H
+  Eigen::RowVectorXd bias;  ///< 1 × H
+};
+/// φ_k(y) = exp(−½ Σ_d inverse_widths_d (y_d − centres_kd)²): kernel-based regression.
+struct RbfUnits {
+  Eigen::MatrixXd centres;            ///< K × D, the training frames
+  Eigen::RowVectorXd inverse_widths;  ///< 1 × D
+};
+/// A back-constraint: latent points as a function of observed frames, x = b(y) = φ(y) · weights + bias.
+struct BackConstraint {
+  std::variant<HiddenUnits, RbfUnits> units;
+  Eigen::MatrixXd weights;  ///< H × d
+  Eigen::RowVectorXd bias;  ///< 1 × d
+};
+void fields(Archive& ar, BackConstraint& b);
+
+/// How latent points follow each other.
+enum class DynamicsForm {
+  absolute,   ///< x_t = h(x_{t−1}) + ε
+  difference  ///< x_t = x_{t−1} + h(x_{t−1}) + ε
+};
+
 /// A shared Gaussian process dynamical model of one state (docs/method.md §4): audio and
 /// visual features are two processes of one latent trajectory. Without
 /// dynamics, for windows of one frame, it is an SGPLVM.
@@ -68,12 +92,15 @@ struct Sgpdm {
   Eigen::MatrixXd audio_frames;             ///< N × D_Y, scaled: for nearest neighbours
   GaussianProcess audio;                    ///< f: X -> Y
   GaussianProcess visual;                   ///< g: X -> Z
-  std::optional<GaussianProcess> dynamics;  ///< h: x_{t−1} -> x_t
-  double dynamics_bias = 1;                 ///< weight of the dynamics in sequence optimisation
-  double first_variance = 1;                ///< of the Gaussian prior of a window's first latent point
-  double log_likelihood = 0;                ///< training objective reached, natural logarithm
-  std::int64_t iterations = 0;              ///< of the optimiser
-  double jitter = 0;                        ///< largest share of the mean variance added to a factorised matrix
+  std::optional<GaussianProcess> dynamics;  ///< h: x_{t−1} -> x_t, or its difference from x_{t−1}
+  DynamicsForm form = DynamicsForm::absolute;
+  std::optional<BackConstraint> back_constraint;  ///< b: Y -> X, of scaled frames
+  double dynamics_bias = 1;                       ///< weight of the dynamics in sequence optimisation
+  double first_variance = 1;                      ///< of the Gaussian prior of a window's first latent point
+  double log_likelihood = 0;                      ///< training objective reached, natural logarithm
+  std::int64_t iterations = 0;                    ///< of the optimiser
+  double jitter = 0;                              ///< largest share of the mean variance added to a factorised matrix
+  std::vector<double> trace;                      ///< the objective at the start and after each iteration
 };
 template <>
 inline constexpr PortType port_type<Sgpdm>{"Sgpdm", 2};

@@ -3,95 +3,12 @@
 #include <Eigen/Dense>
 
 #include "nodes/latent/linear_models.h"
-#include "nodes/latent/scg.h"
 #include "tests/nodes/latent/gaussian.h"
 
 namespace talkgraph {
 namespace {
 
 using testing::gaussian;
-
-struct Rosenbrock : Objective {
-  Eigen::Index size() const override { return 2; }
-  bool evaluate(const Eigen::VectorXd& p, double& cost, Eigen::VectorXd* gradient) override {
-    const double a = 1 - p[0], b = p[1] - p[0] * p[0];
-    cost = a * a + 100 * b * b;
-    if (gradient) *gradient = Eigen::Vector2d(-2 * a - 400 * p[0] * b, 200 * b);
-    return true;
-  }
-};
-
-struct Quadratic : Objective {
-  Eigen::MatrixXd root = gaussian(8, 8, 1);
-  Eigen::VectorXd optimum = gaussian(8, 1, 2);
-  Eigen::Index size() const override { return 8; }
-  bool evaluate(const Eigen::VectorXd& p, double& cost, Eigen::VectorXd* gradient) override {
-    const Eigen::VectorXd r = root * (p - optimum);
-    cost = 0.5 * r.squaredNorm();
-    if (gradient) *gradient = root.transpose() * r;
-    return true;
-  }
-};
-
-TEST(Scg, FindsTheMinimumOfRosenbrocksFunction) {
-  Rosenbrock f;
-  Eigen::VectorXd p = Eigen::Vector2d(-1.2, 1);
-  ScaledConjugateGradients scg;
-  scg.iterations = 1000;
-  scg.step_tolerance = scg.cost_tolerance = 1e-10;
-  const auto report = scg.minimise(f, p);
-  EXPECT_NE(report.reason, StopReason::iterations);
-  EXPECT_TRUE(p.isApprox(Eigen::Vector2d(1, 1), 1e-4)) << p.transpose();
-}
-
-TEST(Scg, SolvesAQuadraticAndReports) {
-  Quadratic f;
-  Eigen::VectorXd p = Eigen::VectorXd::Zero(8);
-  ScaledConjugateGradients scg;
-  scg.step_tolerance = scg.cost_tolerance = 1e-12;
-  scg.iterations = 500;
-  const auto report = scg.minimise(f, p);
-  EXPECT_TRUE(p.isApprox(f.optimum, 1e-3));
-  EXPECT_LT(report.cost, 1e-8);
-  EXPECT_GT(report.evaluations, report.iterations);
-}
-
-TEST(Scg, KeepsToItsIterationLimitAndNeverRaisesTheCost) {
-  Rosenbrock f;
-  Eigen::VectorXd p = Eigen::Vector2d(-1.2, 1);
-  ScaledConjugateGradients scg;
-  scg.iterations = 7;
-  double last = 1e300;
-  scg.on_iteration = [&](int, double cost) {
-    EXPECT_LE(cost, last);
-    last = cost;
-  };
-  const auto report = scg.minimise(f, p);
-  EXPECT_EQ(report.iterations, 7);
-  EXPECT_EQ(report.reason, StopReason::iterations);
-  double cost = 0;
-  f.evaluate(p, cost, nullptr);
-  EXPECT_EQ(cost, report.cost);
-}
-
-TEST(Scg, StepsBackWhereTheCostCannotBeEvaluated) {
-  struct HalfPlane : Objective {
-    Eigen::Index size() const override { return 1; }
-    bool evaluate(const Eigen::VectorXd& p, double& cost, Eigen::VectorXd* gradient) override {
-      if (p[0] <= 0) return false;
-      cost = p[0] - 1e-3 * std::log(p[0]);
-      if (gradient) *gradient = Eigen::VectorXd::Constant(1, 1 - 1e-3 / p[0]);
-      return true;
-    }
-  } f;
-  Eigen::VectorXd p = Eigen::VectorXd::Constant(1, 0.5);
-  ScaledConjugateGradients scg;
-  scg.step_tolerance = scg.cost_tolerance = 1e-9;
-  scg.minimise(f, p);
-  EXPECT_NEAR(p[0], 1e-3, 1e-5);
-  p[0] = -1;
-  EXPECT_EQ(scg.minimise(f, p).reason, StopReason::failed);
-}
 
 /// Largest sine of the angles between two column spaces.
 double distance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {

@@ -4,10 +4,11 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
+#include "nodes/latent/back_constraint.h"
 #include "nodes/latent/predictive.h"
 #include "nodes/latent/sequence_objective.h"
-#include "nodes/latent/sgpdm_objective.h"
 #include "tests/nodes/latent/textbook.h"
 #include "tests/temporary_folder.h"
 
@@ -34,83 +35,6 @@ StateData wavy(int windows, int length, std::uint64_t seed = 1) {
   return data;
 }
 
-SgpdmProblem small_problem(bool sparse, bool with_dynamics) {
-  SgpdmProblem p;
-  p.audio = gaussian(10, 4, 1);
-  p.visual = gaussian(10, 3, 2);
-  p.latents = gaussian(10, 2, 3);
-  p.lengths = {4, 1, 5};
-  p.dynamics_weight = 2;
-  p.first_variance = 0.7;
-  p.log_scale = 1.5;
-  const auto likelihood = [&]() -> std::unique_ptr<GpLikelihood> {
-    if (sparse) return std::make_unique<FitcLikelihood>();
-    return std::make_unique<FullLikelihood>();
-  };
-  const Eigen::MatrixXd none(0, 2);
-  p.f = {"audio",
-         {{RbfTerm{1.2, 0.8}, BiasTerm{0.1}, WhiteTerm{0.2, 0.01}}},
-         sparse ? gaussian(4, 2, 4) : none,
-         likelihood(),
-         1};
-  p.g = {"visual",
-         {{RbfTerm{0.9, 1.1}, BiasTerm{0.2}, WhiteTerm{0.1, 0.01}}},
-         sparse ? gaussian(3, 2, 5) : none,
-         likelihood(),
-         4.0 / 3};
-  if (with_dynamics)
-    p.h = GpStream{"dynamics",
-                   {{RbfTerm{0.3, 3}, LinearTerm{0.7}, WhiteTerm{0.1, 0.01}}},
-                   sparse ? gaussian(3, 2, 6) : none,
-                   likelihood(),
-                   2};
-  return p;
-}
-
-TEST(SgpdmObjective, IsEquation469) {
-  const SgpdmProblem p = small_problem(false, true);
-  Eigen::MatrixXd in(7, 2), out(7, 2), first(3, 2);
-  in << p.latents.middleRows(0, 3), p.latents.middleRows(5, 4);
-  out << p.latents.middleRows(1, 3), p.latents.middleRows(6, 4);
-  first << p.latents.row(0), p.latents.row(4), p.latents.row(5);
-  const double expected = testing::textbook_density(testing::textbook_full(p.f.kernel, p.latents), p.audio) +
-                          4.0 / 3 * testing::textbook_density(testing::textbook_full(p.g.kernel, p.latents), p.visual) +
-                          2 * (testing::textbook_density(testing::textbook_full(p.h->kernel, in), out) +
-                               testing::textbook_density(0.7 * Eigen::MatrixXd::Identity(3, 3), first)) -
-                          1.5;
-  SgpdmObjective objective(small_problem(false, true));
-  EXPECT_NEAR(objective.log_likelihood(objective.start(), nullptr), expected, 1e-9);
-}
-
-TEST(SgpdmObjective, GradientsAgreeWithDifferencesForEveryCombination) {
-  for (const bool sparse : {false, true})
-    for (const bool with_dynamics : {false, true})
-      for (const double prior : {0.0, 1.5}) {
-        SgpdmProblem problem = small_problem(sparse, with_dynamics);
-        problem.prior_deviation = prior;
-        SgpdmObjective objective(std::move(problem));
-        for (std::uint64_t seed = 0; seed < 3; ++seed) {
-          const auto check = check_gradient(objective, objective.start() + 0.3 * gaussian(objective.size(), 1, seed));
-          EXPECT_TRUE(check.evaluated && check.cost_consistent);
-          EXPECT_LT(check.worst, 1e-6) << "sparse " << sparse << " dynamics " << with_dynamics << " at " << check.where;
-        }
-      }
-}
-
-TEST(SgpdmObjective, FixedParametersHaveNoDerivative) {
-  SgpdmProblem problem = small_problem(true, true);
-  problem.fixed = {"latents", "inducing", "audio.white", "dynamics.inverse_width"};
-  SgpdmObjective objective(std::move(problem));
-  double cost = 0;
-  Eigen::VectorXd g;
-  ASSERT_TRUE(objective.evaluate(objective.start(), cost, &g));
-  EXPECT_TRUE(g.head(20 + 8 + 6 + 6).isZero(0));
-  EXPECT_EQ((g.tail(12).array() == 0).count(), 2);
-  SgpdmProblem bad = small_problem(true, false);
-  bad.fixed = {"audio.linear"};
-  EXPECT_THROW(SgpdmObjective{std::move(bad)}, std::invalid_argument);
-}
-
 TEST(TrainSgpdm, FitsItsTrainingDataAndRaisesTheLikelihood) {
   const auto data = wavy(12, 5);
   Context context;
@@ -133,6 +57,104 @@ TEST(TrainSgpdm, FitsItsTrainingDataAndRaisesTheLikelihood) {
     power += (data.visual[static_cast<std::size_t>(w)].rowwise() - after.visual.mean).squaredNorm();
   }
   EXPECT_LT(error / power, 0.05);
+}
+
+TEST(TrainSgpdm, FitsWithEverySetting) {
+  const auto data = wavy(12, 5);
+  Context context;
+  TrainSgpdm plain;
+  plain.latent_dimension = 2;
+  plain.iterations = 60;
+  std::map<std::string, TrainSgpdm> settings;
+  const auto add = [&](const std::string& name) -> TrainSgpdm& { return settings[name] = plain; };
+  add("difference").dynamics = LatentDynamics::difference;
+  add("no dynamics").dynamics = LatentDynamics::none;
+  add("mlp").back_constraint = BackConstraintKind::mlp;
+  add("kbr").back_constraint = BackConstraintKind::kbr;
+  add("learnt scale").learn_scale = true;
+  add("noise first").first_point = FirstPoint::noise;
+  add("lbfgs").optimiser = OptimiserKind::lbfgs;
+  add("held").hold_noise = 30;
+  add("ppca").initial = LatentStart::ppca;
+  add("cca").initial = LatentStart::cca;
+  for (const auto& [name, train] : settings) {
+    const Sgpdm model = train(data, context);
+    Predictive visual;
+    visual.compute(model.visual, model.latents);
+    const Eigen::MatrixXd fitted = unscaled(model.visual, visual.mean());
+    double error = 0, power = 0;
+    for (int w = 0; w < 12; ++w) {
+      error += (fitted.middleRows(5 * w, 5) - data.visual[static_cast<std::size_t>(w)]).squaredNorm();
+      power += (data.visual[static_cast<std::size_t>(w)].rowwise() - model.visual.mean).squaredNorm();
+    }
+    EXPECT_LT(error / power, 0.12) << name;
+    EXPECT_TRUE(std::is_sorted(model.trace.begin(), model.trace.end())) << name;
+    EXPECT_EQ(model.trace.back(), model.log_likelihood) << name;
+    EXPECT_EQ(model.dynamics.has_value(), name != "no dynamics");
+    ASSERT_EQ(model.back_constraint.has_value(), name == "mlp" || name == "kbr");
+    if (model.back_constraint) {
+      EXPECT_TRUE(latent_points(*model.back_constraint, model.audio_frames).isApprox(model.latents, 1e-9));
+    }
+  }
+}
+
+TEST(TrainSgpdm, LearntScalesKeepTheBackConstraintTrue) {
+  const auto data = wavy(8, 4);
+  Context context;
+  for (const auto kind : {BackConstraintKind::mlp, BackConstraintKind::kbr}) {
+    TrainSgpdm train;
+    train.back_constraint = kind;
+    train.learn_scale = true;
+    train.prior_deviation = 0;
+    const Sgpdm model = train(data, context);
+    EXPECT_TRUE(latent_points(*model.back_constraint, model.audio_frames).isApprox(model.latents, 1e-9));
+    EXPECT_TRUE(unscaled(model.audio, model.audio_frames).topRows(4).isApprox(data.audio[0], 1e-12));
+  }
+}
+
+TEST(TrainSgpdm, HoldsTheNoiseForTheFirstIterations) {
+  Context context;
+  TrainSgpdm train;
+  train.iterations = train.hold_noise = 10;
+  EXPECT_DOUBLE_EQ(white_variance(train(wavy(6, 4), context).visual.kernel), 0.5);
+  train.iterations = 15;
+  EXPECT_NE(white_variance(train(wavy(6, 4), context).visual.kernel), 0.5);
+}
+
+TEST(TrainSgpdm, FirstPointsMayTakeTheNoiseOfTheDynamics) {
+  Context context;
+  TrainSgpdm train;
+  train.first_point = FirstPoint::noise;
+  const Sgpdm model = train(wavy(6, 4), context);
+  EXPECT_DOUBLE_EQ(model.first_variance, white_variance(model.dynamics->kernel));
+  EXPECT_EQ(train(wavy(6, 1), context).first_variance, 0.1);
+}
+
+TEST(TrainSgpdm, GoesOnWhereItWasStopped) {
+  const auto data = wavy(8, 4);
+  const test::TemporaryFolder folder;
+  for (const int hold : {0, 8, 25}) {
+    TrainSgpdm train;
+    train.iterations = 20;
+    train.hold_noise = hold;
+    Context context;
+    const Sgpdm whole = train(data, context);
+    train.checkpoint = folder.file("checkpoints");
+    std::atomic<bool> cancel = false;
+    Context stopped;
+    stopped.cancel = &cancel;
+    stopped.on_progress = [&](double share) { cancel = share >= 0.5; };
+    EXPECT_THROW(train(data, stopped), Cancelled);
+    EXPECT_FALSE(std::filesystem::is_empty(train.checkpoint));
+    int told = 0;
+    context.on_progress = [&](double) { ++told; };
+    const Sgpdm resumed = train(data, context);
+    EXPECT_EQ(resumed.latents, whole.latents);
+    EXPECT_EQ(resumed.trace, whole.trace);
+    EXPECT_LT(told, 12);
+    EXPECT_TRUE(std::filesystem::is_empty(train.checkpoint));
+    context.on_progress = nullptr;
+  }
 }
 
 TEST(TrainSgpdm, GivesTheSameBitsAgain) {

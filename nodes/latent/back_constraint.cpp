@@ -1,0 +1,143 @@
+#include "nodes/latent/back_constraint.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "graph/random.h"
+
+namespace talkgraph {
+
+namespace {
+
+constexpr double ridge = 1e-3;
+constexpr std::uint64_t hidden_seed = 1;
+
+/// φ of every row, N × H.
+Eigen::MatrixXd features(const HiddenUnits& units, const ConstMatrix& y) {
+  return ((y * units.weights).rowwise() + units.bias).array().tanh();
+}
+
+Eigen::MatrixXd features(const RbfUnits& units, const ConstMatrix& y) {
+  const Eigen::RowVectorXd root = units.inverse_widths.cwiseSqrt();
+  const Eigen::MatrixXd a = y * root.asDiagonal(), b = units.centres * root.asDiagonal();
+  Eigen::MatrixXd squares = -2 * a * b.transpose();
+  squares.colwise() += a.rowwise().squaredNorm();
+  squares.rowwise() += b.rowwise().squaredNorm().transpose();
+  return (-0.5 * squares.array().max(0.0)).exp();
+}
+
+Eigen::MatrixXd features(const BackConstraint& b, const ConstMatrix& y) {
+  return std::visit([&](const auto& units) { return features(units, y); }, b.units);
+}
+
+void fit_weights(BackConstraint& b, const ConstMatrix& y, const ConstMatrix& x) {
+  b.bias = x.colwise().mean();
+  const Eigen::MatrixXd phi = features(b, y);
+  Eigen::MatrixXd normal = phi.transpose() * phi;
+  normal.diagonal().array() += ridge * normal.diagonal().mean() + 1e-12;
+  b.weights = normal.ldlt().solve(phi.transpose() * (x.rowwise() - b.bias));
+}
+
+/// Calls f(matrix) for each part of the parameters, in order.
+template <class B, class F>
+void each_part(B& b, F f) {
+  f(b.weights);
+  f(b.bias);
+  if (auto* hidden = std::get_if<HiddenUnits>(&b.units)) {
+    f(hidden->weights);
+    f(hidden->bias);
+  }
+}
+
+}  // namespace
+
+Eigen::MatrixXd latent_points(const BackConstraint& b, const ConstMatrix& y) {
+  return (features(b, y) * b.weights).rowwise() + b.bias;
+}
+
+BackConstraint perceptron(const ConstMatrix& y, const ConstMatrix& x, Eigen::Index hidden) {
+  Random random(hidden_seed);
+  const double deviation = 1 / std::sqrt(static_cast<double>(y.cols()));
+  HiddenUnits units;
+  units.weights = Eigen::MatrixXd::NullaryExpr(y.cols(), hidden, [&] { return deviation * random.normal(); });
+  units.bias = Eigen::RowVectorXd::NullaryExpr(hidden, [&] { return random.normal(); });
+  BackConstraint b{std::move(units), {}, {}};
+  fit_weights(b, y, x);
+  return b;
+}
+
+BackConstraint kernel_regression(const ConstMatrix& y, const ConstMatrix& x, double inverse_width) {
+  BackConstraint b{RbfUnits{y, Eigen::RowVectorXd::Constant(y.cols(), inverse_width)}, {}, {}};
+  fit_weights(b, y, x);
+  return b;
+}
+
+BackConstraint of_rescaled(BackConstraint b, const Eigen::RowVectorXd& ratio) {
+  if (auto* hidden = std::get_if<HiddenUnits>(&b.units)) hidden->weights.array().colwise() *= ratio.transpose().array();
+  if (auto* rbf = std::get_if<RbfUnits>(&b.units)) {
+    rbf->centres.array().rowwise() /= ratio.array();
+    rbf->inverse_widths.array() *= ratio.array().square();
+  }
+  return b;
+}
+
+BackProjection::BackProjection(BackConstraint b, Eigen::MatrixXd y)
+    : b_(std::move(b)), y_(std::move(y)), features_(features(b_, y_)) {}
+
+Eigen::Index BackProjection::size() const {
+  Eigen::Index n = 0;
+  each_part(b_, [&](const auto& part) { n += part.size(); });
+  return n;
+}
+
+Eigen::VectorXd BackProjection::parameters() const {
+  Eigen::VectorXd all(size());
+  Eigen::Index at = 0;
+  each_part(b_, [&](const auto& part) {
+    all.segment(at, part.size()) = part.reshaped();
+    at += part.size();
+  });
+  return all;
+}
+
+BackConstraint BackProjection::with(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
+  BackConstraint b = b_;
+  Eigen::Index at = 0;
+  each_part(b, [&](auto& part) {
+    part.reshaped() = parameters.segment(at, part.size());
+    at += part.size();
+  });
+  return b;
+}
+
+const Eigen::MatrixXd& BackProjection::compute(const Eigen::Ref<const Eigen::VectorXd>& parameters) {
+  Eigen::Index at = 0;
+  each_part(b_, [&](auto& part) {
+    part.reshaped() = parameters.segment(at, part.size());
+    at += part.size();
+  });
+  if (std::holds_alternative<HiddenUnits>(b_.units)) features_ = features(b_, y_);
+  x_.resize(y_.rows(), b_.weights.cols());
+  x_.noalias() = features_ * b_.weights;
+  x_.rowwise() += b_.bias;
+  return x_;
+}
+
+void BackProjection::gradient(const ConstMatrix& x_gradient, VectorView parameters) const {
+  BackConstraint derivative;
+  derivative.weights = features_.transpose() * x_gradient;
+  derivative.bias = x_gradient.colwise().sum();
+  if (std::holds_alternative<HiddenUnits>(b_.units)) {
+    const Eigen::MatrixXd inner = (x_gradient * b_.weights.transpose()).array() * (1 - features_.array().square());
+    derivative.units = HiddenUnits{y_.transpose() * inner, inner.colwise().sum()};
+  } else {
+    derivative.units = RbfUnits{};
+  }
+  Eigen::Index at = 0;
+  each_part(derivative, [&](const auto& part) {
+    parameters.segment(at, part.size()) = part.reshaped();
+    at += part.size();
+  });
+}
+
+}  // namespace talkgraph

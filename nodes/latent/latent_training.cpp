@@ -1,0 +1,268 @@
+#include "nodes/latent/latent_training.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "nodes/latent/lbfgs.h"
+#include "nodes/latent/scg.h"
+#include "nodes/latent/sgpdm_objective.h"
+
+namespace talkgraph {
+
+namespace {
+
+using Lengths = std::vector<std::int64_t>;
+
+/// Frames less their mean, and the scale they are to be divided by.
+struct CentredFrames {
+  Eigen::MatrixXd values;
+  Eigen::RowVectorXd mean, scale;
+  bool varies = false;
+  Eigen::MatrixXd scaled() const { return values.array().rowwise() / scale.array(); }
+};
+
+CentredFrames centred(const Eigen::MatrixXd& frames, OutputScaling scaling) {
+  CentredFrames s;
+  s.mean = frames.colwise().mean();
+  s.values = frames.rowwise() - s.mean;
+  const Eigen::RowVectorXd deviation =
+      (s.values.colwise().squaredNorm() / static_cast<double>(frames.rows())).cwiseSqrt();
+  const double common = std::sqrt(deviation.squaredNorm() / static_cast<double>(frames.cols()));
+  s.varies = common > 1e-12 * (1 + s.mean.cwiseAbs().maxCoeff());
+  s.scale.setOnes(frames.cols());
+  if (s.varies && scaling == OutputScaling::common) s.scale.setConstant(common);
+  if (s.varies && scaling == OutputScaling::per_dimension)
+    for (Eigen::Index c = 0; c < frames.cols(); ++c)
+      if (deviation[c] > 1e-6 * common) s.scale[c] = deviation[c];
+  return s;
+}
+
+/// d as the data allow it.
+Eigen::Index allowed_dimension(int wanted, const std::vector<TrainingStream>& streams) {
+  Eigen::Index d = std::min<Eigen::Index>(wanted, streams[0].frames.rows() - 1);
+  for (const auto& s : streams) d = std::min(d, s.frames.cols());
+  return std::max<Eigen::Index>(1, d);
+}
+
+std::unique_ptr<GpLikelihood> likelihood_for(bool sparse) {
+  if (sparse) return std::make_unique<FitcLikelihood>();
+  return std::make_unique<FullLikelihood>();
+}
+
+/// Rows at even distances.
+Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count) {
+  Eigen::MatrixXd chosen(count, x.cols());
+  for (Eigen::Index i = 0; i < count; ++i) chosen.row(i) = x.row(i * x.rows() / count);
+  return chosen;
+}
+
+/// All but each sequence's last row.
+Eigen::MatrixXd inputs_of_steps(const Eigen::MatrixXd& x, const Lengths& lengths) {
+  Eigen::MatrixXd in(x.rows() - static_cast<Eigen::Index>(lengths.size()), x.cols());
+  Eigen::Index from = 0, to = 0;
+  for (const auto length : lengths) {
+    in.middleRows(to, length - 1) = x.middleRows(from, length - 1);
+    from += length;
+    to += length - 1;
+  }
+  return in;
+}
+
+GpStream stream_of(const LatentTraining& options, std::string name, Kernel kernel, const Eigen::MatrixXd& inputs,
+                   double weight) {
+  const bool sparse = options.approximation != CovarianceApproximation::full && inputs.rows() > options.inducing;
+  kernel.terms.push_back(WhiteTerm{std::max(options.noise, 2 * options.minimum_noise), options.minimum_noise});
+  return GpStream{std::move(name), std::move(kernel), spread(inputs, sparse ? options.inducing : 0),
+                  likelihood_for(sparse), weight};
+}
+
+std::optional<BackProjection> back_projection(const LatentTraining& options, const Eigen::MatrixXd& frames,
+                                              const Eigen::MatrixXd& start) {
+  switch (options.back_constraint) {
+    case BackConstraintKind::none:
+      break;
+    case BackConstraintKind::mlp:
+      return BackProjection(perceptron(frames, start, options.hidden_units), frames);
+    case BackConstraintKind::kbr:
+      return BackProjection(kernel_regression(frames, start, options.kbr_inverse_width), frames);
+  }
+  return std::nullopt;
+}
+
+SgpdmProblem problem_of(const LatentTraining& options, const std::vector<TrainingStream>& streams,
+                        const std::vector<CentredFrames>& frames, const Lengths& lengths,
+                        const Eigen::MatrixXd& start) {
+  SgpdmProblem problem;
+  problem.lengths = lengths;
+  problem.latents = start;
+  problem.back_constraint = back_projection(options, frames[0].scaled(), start);
+  if (problem.back_constraint)
+    problem.latents = problem.back_constraint->compute(problem.back_constraint->parameters());
+  problem.form = options.dynamics == LatentDynamics::difference ? DynamicsForm::difference : DynamicsForm::absolute;
+  if (options.first_point == FirstPoint::variance) problem.first_variance = options.first_variance;
+  problem.prior_deviation = options.prior_deviation;
+  problem.fixed = options.fixed;
+
+  Eigen::Index larger = 0;
+  const Kernel observation{{RbfTerm{1, 1}, BiasTerm{0.1}}};
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    larger = std::max(larger, frames[i].values.cols());
+    problem.observations.push_back(
+        {stream_of(options, streams[i].name, observation, problem.latents, streams[i].weight), frames[i].values,
+         frames[i].scale, options.learn_scale});
+  }
+  problem.dynamics_weight = options.dynamics_bias ? static_cast<double>(larger) / static_cast<double>(start.cols()) : 1;
+  const bool steps = start.rows() > static_cast<Eigen::Index>(lengths.size());
+  if (options.dynamics == LatentDynamics::none || !steps) {
+    if (!problem.first_variance) problem.first_variance = options.first_variance;
+    return problem;
+  }
+  problem.dynamics =
+      stream_of(options, "dynamics", Kernel{{RbfTerm{0.1, options.dynamics_inverse_width}, LinearTerm{1}}},
+                inputs_of_steps(problem.latents, lengths), problem.dynamics_weight);
+  return problem;
+}
+
+/// Unfinished training of one model on disk.
+class Checkpoint {
+ public:
+  Checkpoint(const std::string& folder, const Key& of) {
+    if (folder.empty()) return;
+    std::filesystem::create_directories(folder);
+    path_ = std::filesystem::path(folder) / (of.str() + ".h5");
+  }
+  bool load() {
+    if (path_.empty() || !std::filesystem::exists(path_)) return false;
+    fields(*hdf5_reader(path_.string()));
+    return true;
+  }
+  void save_now_and_then() {
+    if (path_.empty() || std::chrono::steady_clock::now() - saved_ < std::chrono::seconds(10)) return;
+    save();
+    saved_ = std::chrono::steady_clock::now();
+  }
+  void save() {
+    if (!path_.empty()) write_hdf5(path_.string(), [this](Archive& ar) { fields(ar); });
+  }
+  void remove() {
+    if (!path_.empty()) std::filesystem::remove(path_);
+  }
+
+  OptimiserState state;
+  bool noise_held = false;
+
+ private:
+  void fields(Archive& ar) {
+    ar("state", state);
+    ar("noise_held", noise_held);
+  }
+  std::filesystem::path path_;
+  std::chrono::steady_clock::time_point saved_ = std::chrono::steady_clock::now();
+};
+
+/// Of the start of an optimisation, which stands for all that it depends on.
+Key key_of(const std::string& subject, SgpdmObjective& objective, const LatentTraining& options) {
+  std::string what = subject;
+  Eigen::VectorXd start = objective.start(), gradient;
+  double cost = 0;
+  objective.evaluate(start, cost, &gradient);
+  std::int64_t hold = options.hold_noise, optimiser = static_cast<std::int64_t>(options.optimiser);
+  return content_key([&](Archive& ar) {
+    ar("subject", what);
+    ar("start", start);
+    ar("cost", cost);
+    ar("gradient", gradient);
+    ar("hold", hold);
+    ar("optimiser", optimiser);
+  });
+}
+
+std::unique_ptr<Optimiser> optimiser_of(const LatentTraining& options) {
+  std::unique_ptr<Optimiser> optimiser;
+  if (options.optimiser == OptimiserKind::lbfgs)
+    optimiser = std::make_unique<Lbfgs>();
+  else
+    optimiser = std::make_unique<ScaledConjugateGradients>();
+  if (options.time_limit > 0) optimiser->seconds = options.time_limit;
+  return optimiser;
+}
+
+/// Runs the optimiser, first with the noise held, from the start or a checkpoint; `state` receives the end.
+void maximise(const LatentTraining& options, int iterations, SgpdmObjective& objective, Checkpoint& checkpoint,
+              Context& context) {
+  const auto optimiser = optimiser_of(options);
+  optimiser->on_iteration = [&](int i, double) {
+    checkpoint.save_now_and_then();
+    if (context.cancelled()) checkpoint.save();
+    context.check_cancelled();
+    context.progress(static_cast<double>(i) / iterations);
+  };
+  OptimiserState& state = checkpoint.state;
+  if (!checkpoint.load()) {
+    state.parameters = objective.start();
+    checkpoint.noise_held = options.hold_noise > 0;
+  }
+  if (checkpoint.noise_held) {
+    objective.hold_noise(true);
+    optimiser->iterations = std::min(options.hold_noise, iterations);
+    optimiser->minimise(objective, state);
+    objective.hold_noise(false);
+    checkpoint.noise_held = false;
+    state.restart();
+  }
+  optimiser->iterations = iterations;
+  optimiser->minimise(objective, state);
+  if (state.report.reason == StopReason::failed) objective.log_likelihood(state.parameters, nullptr);
+}
+
+}  // namespace
+
+TrainedLatents train_latents(const LatentTraining& options, const std::string& subject,
+                             const std::vector<TrainingStream>& streams, const Lengths& lengths,
+                             const StartValues& start, Context& context) {
+  std::vector<CentredFrames> frames;
+  std::vector<Eigen::MatrixXd> scaled;
+  for (const auto& s : streams) {
+    frames.push_back(centred(s.frames, s.scaling));
+    scaled.push_back(frames.back().scaled());
+  }
+  const Eigen::Index d = allowed_dimension(options.latent_dimension, streams);
+  SgpdmProblem problem = problem_of(options, streams, frames, lengths, start(scaled, d));
+  TrainedLatents trained;
+  trained.dynamics_weight = problem.dynamics_weight;
+  SgpdmObjective objective(std::move(problem));
+
+  const bool varies = std::any_of(frames.begin(), frames.end(), [](const auto& f) { return f.varies; });
+  Checkpoint checkpoint(options.checkpoint, options.checkpoint.empty() ? Key{} : key_of(subject, objective, options));
+  maximise(options, varies ? options.iterations : 0, objective, checkpoint, context);
+  const Eigen::VectorXd& parameters = checkpoint.state.parameters;
+
+  trained.latents = objective.latents(parameters);
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    trained.processes.push_back(objective.process(i, parameters));
+    trained.processes.back().mean = frames[i].mean;
+  }
+  trained.first_frames = frames[0].values.array().rowwise() / trained.processes[0].scale.array();
+  trained.dynamics = objective.dynamics(parameters);
+  if (trained.dynamics) {
+    trained.dynamics->mean = Eigen::RowVectorXd::Zero(d);
+    trained.dynamics->scale = Eigen::RowVectorXd::Ones(d);
+  }
+  if (auto b = objective.back_constraint(parameters))
+    trained.back_constraint = of_rescaled(std::move(*b), trained.processes[0].scale.array() / frames[0].scale.array());
+  trained.first_variance = objective.first_variance(parameters);
+  trained.jitter = objective.jitter();
+  trained.report = checkpoint.state.report;
+  checkpoint.remove();
+  context.log(fmt::format("{}: {} frames in {} sequences, d = {}, ln p = {:.1f} after {} iterations ({}){}", subject,
+                          trained.latents.rows(), lengths.size(), d, -trained.report.cost, trained.report.iterations,
+                          str(trained.report.reason),
+                          trained.jitter > 1e-6 ? fmt::format(", jitter {:.1g}", trained.jitter) : ""));
+  return trained;
+}
+
+}  // namespace talkgraph

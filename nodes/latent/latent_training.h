@@ -1,0 +1,158 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "graph/context.h"
+#include "graph/description.h"
+#include "nodes/latent/optimiser.h"
+#include "nodes/types/sgpdm.h"
+
+namespace talkgraph {
+
+enum class OutputScaling {
+  per_dimension,  ///< every dimension divided by its own standard deviation
+  common,         ///< all by the root mean square of the standard deviations: their ratios are kept
+  none
+};
+template <>
+inline constexpr EnumNames<OutputScaling, 3> enum_names<OutputScaling>{{{OutputScaling::per_dimension, "per_dimension"},
+                                                                        {OutputScaling::common, "common"},
+                                                                        {OutputScaling::none, "none"}}};
+
+enum class CovarianceApproximation { full, fitc };
+template <>
+inline constexpr EnumNames<CovarianceApproximation, 2> enum_names<CovarianceApproximation>{
+    {{CovarianceApproximation::full, "full"}, {CovarianceApproximation::fitc, "fitc"}}};
+
+enum class LatentDynamics { none, absolute, difference };
+template <>
+inline constexpr EnumNames<LatentDynamics, 3> enum_names<LatentDynamics>{{{LatentDynamics::none, "none"},
+                                                                          {LatentDynamics::absolute, "absolute"},
+                                                                          {LatentDynamics::difference, "difference"}}};
+
+enum class BackConstraintKind { none, mlp, kbr };
+template <>
+inline constexpr EnumNames<BackConstraintKind, 3> enum_names<BackConstraintKind>{
+    {{BackConstraintKind::none, "none"}, {BackConstraintKind::mlp, "mlp"}, {BackConstraintKind::kbr, "kbr"}}};
+
+enum class FirstPoint {
+  variance,  ///< a variance of its own
+  noise      ///< that of the dynamics' noise, β_dyn⁻¹
+};
+template <>
+inline constexpr EnumNames<FirstPoint, 2> enum_names<FirstPoint>{
+    {{FirstPoint::variance, "variance"}, {FirstPoint::noise, "noise"}}};
+
+enum class OptimiserKind { scg, lbfgs };
+template <>
+inline constexpr EnumNames<OptimiserKind, 2> enum_names<OptimiserKind>{
+    {{OptimiserKind::scg, "scg"}, {OptimiserKind::lbfgs, "lbfgs"}}};
+
+/// What training has in common for one and for two observed streams: its
+/// parameters, and the maximisation of Eqn 4.69 over latent points (or a
+/// back-constraint's parameters), inducing points and kernel parameters.
+///
+/// Observation kernels are RBF + bias + white, that of the dynamics RBF + linear + white. A process of at most
+/// `inducing` frames is exact whatever the approximation. The latent dimension is lowered to the smallest stream's and
+/// to N − 1 (at least 1). A dimension that does not vary keeps scale 1. Data that do not vary at all are not optimised:
+/// the model answers with their mean.
+struct LatentTraining {
+  int latent_dimension = 3;
+  CovarianceApproximation approximation = CovarianceApproximation::fitc;
+  int inducing = 100;
+  LatentDynamics dynamics = LatentDynamics::absolute;
+  bool dynamics_bias = true;
+  double dynamics_inverse_width = 1;
+  FirstPoint first_point = FirstPoint::variance;
+  double first_variance = 0.1;
+  BackConstraintKind back_constraint = BackConstraintKind::none;
+  int hidden_units = 20;
+  double kbr_inverse_width = 1;
+  bool learn_scale = false;
+  double noise = 0.5;
+  double minimum_noise = 1e-3;
+  int hold_noise = 0;
+  double prior_deviation = 0.2;
+  std::vector<std::string> fixed = {"dynamics.inverse_width"};
+  OptimiserKind optimiser = OptimiserKind::scg;
+  int iterations = 20;
+  double time_limit = 0;
+  std::string checkpoint;
+};
+
+/// A stream of frames to be observed.
+struct TrainingStream {
+  std::string name;
+  Eigen::MatrixXd frames;  ///< N × D
+  OutputScaling scaling = OutputScaling::per_dimension;
+  double weight = 1;  ///< of its log-likelihood
+};
+
+/// Latent points (N × d) to start from, given all streams' scaled frames.
+using StartValues = std::function<Eigen::MatrixXd(const std::vector<Eigen::MatrixXd>& scaled, Eigen::Index d)>;
+
+/// What training gives; one process a stream.
+struct TrainedLatents {
+  Eigen::MatrixXd latents, first_frames;  ///< N × d; the first stream, scaled
+  std::vector<GaussianProcess> processes;
+  std::optional<GaussianProcess> dynamics;
+  std::optional<BackConstraint> back_constraint;
+  double dynamics_weight = 1, first_variance = 1, jitter = 0;
+  OptimiserReport report;
+};
+/// `subject` ("state \"t\"") stands in messages. Throws std::invalid_argument if `fixed` names an unknown parameter.
+TrainedLatents train_latents(const LatentTraining& options, const std::string& subject,
+                             const std::vector<TrainingStream>& streams, const std::vector<std::int64_t>& lengths,
+                             const StartValues& start, Context& context);
+
+template <class Node>
+void describe_training(Description<Node>& d) {
+  const auto param = [&]<class M>(const char* name, M LatentTraining::*member) {
+    return d.param(name, static_cast<M Node::*>(member));
+  };
+  param("latent_dimension", &LatentTraining::latent_dimension)
+      .at_least(1)
+      .doc("lowered to the smallest stream's dimension and to the number of frames less one");
+  param("approximation", &LatentTraining::approximation).doc("of covariances of more frames than inducing points");
+  param("inducing", &LatentTraining::inducing).at_least(1).doc("inducing points of each process");
+  param("dynamics", &LatentTraining::dynamics)
+      .doc("a process from each latent point to the next, or to the difference from it; none: a GPLVM");
+  param("dynamics_bias", &LatentTraining::dynamics_bias)
+      .doc("the dynamics weigh larger dimension / latent dimension, in synthesis too");
+  param("dynamics_inverse_width", &LatentTraining::dynamics_inverse_width)
+      .positive()
+      .doc("of the RBF part of the dynamics kernel");
+  param("first_point", &LatentTraining::first_point)
+      .doc("variance of the prior of each sequence's first latent point: first_variance, or the noise of the dynamics");
+  param("first_variance", &LatentTraining::first_variance)
+      .positive()
+      .doc("of the prior of first points; of all points where there are no dynamics");
+  param("back_constraint", &LatentTraining::back_constraint)
+      .doc("latent points as a function of the first stream: a perceptron, or kernel-based regression");
+  param("hidden_units", &LatentTraining::hidden_units).at_least(1).doc("of the perceptron");
+  param("kbr_inverse_width", &LatentTraining::kbr_inverse_width)
+      .positive()
+      .doc("of the RBF kernel of the regression, in scaled units");
+  param("learn_scale", &LatentTraining::learn_scale).doc("the outputs' scales are optimised, too");
+  param("noise", &LatentTraining::noise).positive().doc("noise variance to start from, in scaled units");
+  param("minimum_noise", &LatentTraining::minimum_noise).at_least(0).doc("noise variance stays above this");
+  param("hold_noise", &LatentTraining::hold_noise)
+      .at_least(0)
+      .doc("first iterations in which noise stays as it is, so that it does not swallow the signal");
+  param("prior_deviation", &LatentTraining::prior_deviation)
+      .at_least(0)
+      .doc("standard deviation of a normal prior on log kernel parameters about their start values; 0: none");
+  param("fixed", &LatentTraining::fixed)
+      .doc("what is not optimised: latents (or the back-constraint), inducing, or <stream or dynamics>.<parameter>");
+  param("optimiser", &LatentTraining::optimiser).doc("scaled conjugate gradients, or L-BFGS");
+  param("iterations", &LatentTraining::iterations).at_least(0).doc("limit of the optimiser");
+  param("time_limit", &LatentTraining::time_limit)
+      .at_least(0)
+      .doc("seconds after which the optimiser stops; 0: none. What comes of it depends on the machine");
+  param("checkpoint", &LatentTraining::checkpoint)
+      .doc("folder where unfinished training is saved every ten seconds and gone on from after a kill; empty: none");
+}
+
+}  // namespace talkgraph

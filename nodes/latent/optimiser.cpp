@@ -1,0 +1,60 @@
+#include "nodes/latent/optimiser.h"
+
+namespace talkgraph {
+
+std::string str(StopReason reason) {
+  switch (reason) {
+    case StopReason::converged:
+      return "converged";
+    case StopReason::flat:
+      return "gradient vanished";
+    case StopReason::iterations:
+      return "iteration limit";
+    case StopReason::time:
+      return "time limit";
+    case StopReason::stalled:
+      return "no step lowers the cost";
+    case StopReason::failed:
+      break;
+  }
+  return "cost cannot be evaluated";
+}
+
+void OptimiserState::restart() {
+  OptimiserState fresh;
+  fresh.parameters = std::move(parameters);
+  fresh.report = std::move(report);
+  *this = std::move(fresh);
+}
+
+void fields(Archive& ar, OptimiserReport& report) {
+  ar("reason", report.reason);
+  ar("iterations", report.iterations);
+  ar("evaluations", report.evaluations);
+  ar("cost", report.cost);
+  ar("gradient_norm", report.gradient_norm);
+  ar("trace", report.trace);
+}
+
+void fields(Archive& ar, OptimiserState& state) {
+  ar("parameters", state.parameters);
+  ar("report", state.report);
+  ar("gradient", state.gradient);
+  ar("direction", state.direction);
+  ar("scale", state.scale);
+  ar("slope", state.slope);
+  ar("length", state.length);
+  ar("curvature", state.curvature);
+  ar("moved", state.moved);
+  ar("successes", state.successes);
+}
+
+OptimiserReport Optimiser::minimise(Objective& objective, Eigen::VectorXd& parameters) const {
+  OptimiserState state;
+  state.parameters.swap(parameters);
+  minimise(objective, state);
+  parameters.swap(state.parameters);
+  return std::move(state.report);
+}
+
+}  // namespace talkgraph

@@ -1,0 +1,187 @@
+#include "nodes/latent/sgpdm_objective.h"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "nodes/latent/latent_training.h"
+#include "tests/nodes/latent/textbook.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::gaussian;
+
+constexpr Eigen::Index frames = 7, latent = 2;
+const std::vector<std::int64_t> lengths = {3, 1, 3};
+
+struct Combination {
+  CovarianceApproximation approximation = CovarianceApproximation::full;
+  BackConstraintKind back_constraint = BackConstraintKind::none;
+  LatentDynamics dynamics = LatentDynamics::absolute;
+  int streams = 2;
+  bool learn_scale = true;
+  bool first_is_noise = false;
+};
+
+GpStream stream(const Combination& c, std::string name, Kernel kernel, double weight, std::uint64_t seed) {
+  const bool sparse = c.approximation != CovarianceApproximation::full;
+  GpStream s{std::move(name), std::move(kernel), sparse ? gaussian(3, latent, seed) : Eigen::MatrixXd(0, latent),
+             nullptr, weight};
+  if (sparse)
+    s.likelihood = std::make_unique<FitcLikelihood>();
+  else
+    s.likelihood = std::make_unique<FullLikelihood>();
+  return s;
+}
+
+SgpdmProblem problem(const Combination& c) {
+  SgpdmProblem p;
+  const Kernel audio{{RbfTerm{1.2, 0.8}, BiasTerm{0.1}, WhiteTerm{0.2, 0.01}}};
+  const Kernel visual{{RbfTerm{0.9, 1.1}, BiasTerm{0.2}, WhiteTerm{0.1, 0.01}}};
+  p.observations.push_back(
+      {stream(c, "audio", audio, 1, 4), gaussian(frames, 3, 1), Eigen::RowVector3d(0.5, 1, 2), c.learn_scale});
+  if (c.streams == 2)
+    p.observations.push_back(
+        {stream(c, "visual", visual, 1.5, 5), gaussian(frames, 2, 2), Eigen::RowVector2d(0.7, 3), c.learn_scale});
+  p.latents = gaussian(frames, latent, 3);
+  const Eigen::MatrixXd heard = p.observations[0].values;
+  if (c.back_constraint == BackConstraintKind::mlp) p.back_constraint.emplace(perceptron(heard, p.latents, 3), heard);
+  if (c.back_constraint == BackConstraintKind::kbr)
+    p.back_constraint.emplace(kernel_regression(heard, p.latents, 0.7), heard);
+  p.lengths = lengths;
+  p.dynamics_weight = 2;
+  if (!c.first_is_noise) p.first_variance = 0.7;
+  if (c.dynamics == LatentDynamics::difference) p.form = DynamicsForm::difference;
+  if (c.dynamics != LatentDynamics::none)
+    p.dynamics = stream(c, "dynamics", {{RbfTerm{0.3, 3}, LinearTerm{0.7}, WhiteTerm{0.1, 0.01}}}, 2, 6);
+  return p;
+}
+
+Eigen::MatrixXd textbook_covariance(const GpStream& s, const Eigen::MatrixXd& x) {
+  return s.inducing.rows() > 0 ? testing::textbook_fitc(s.kernel, x, s.inducing, 1e-6)
+                               : testing::textbook_full(s.kernel, x);
+}
+
+/// Eqn 4.69 as a textbook writes it, at the problem's own start.
+double textbook(const SgpdmProblem& p) {
+  const Eigen::MatrixXd x = p.back_constraint ? latent_points(p.back_constraint->with(p.back_constraint->parameters()),
+                                                              p.observations[0].values)
+                                              : p.latents;
+  double value = 0;
+  for (const auto& o : p.observations) {
+    const Eigen::MatrixXd scaled = o.values.array().rowwise() / o.scale.array();
+    value += o.process.weight * (testing::textbook_density(textbook_covariance(o.process, x), scaled) -
+                                 static_cast<double>(frames) * o.scale.array().log().sum());
+  }
+  const double first_variance = p.first_variance.value_or(p.dynamics ? testing::textbook_white(p.dynamics->kernel) : 1);
+  const auto prior = [&](const Eigen::MatrixXd& first) {
+    return p.dynamics_weight *
+           testing::textbook_density(first_variance * Eigen::MatrixXd::Identity(first.rows(), first.rows()), first);
+  };
+  if (!p.dynamics) return value + prior(x);
+  Eigen::MatrixXd in(4, latent), out(4, latent), first(3, latent);
+  in << x.middleRows(0, 2), x.middleRows(4, 2);
+  out << x.middleRows(1, 2), x.middleRows(5, 2);
+  first << x.row(0), x.row(3), x.row(4);
+  if (p.form == DynamicsForm::difference) out -= in;
+  return value + prior(first) +
+         p.dynamics->weight * testing::textbook_density(textbook_covariance(*p.dynamics, in), out);
+}
+
+class SgpdmObjectives
+    : public ::testing::TestWithParam<std::tuple<CovarianceApproximation, BackConstraintKind, LatentDynamics, int>> {
+ protected:
+  Combination combination(bool learn_scale, bool first_is_noise) const {
+    const auto& [approximation, back_constraint, dynamics, streams] = GetParam();
+    return {approximation, back_constraint, dynamics, streams, learn_scale, first_is_noise};
+  }
+};
+
+template <class E>
+std::string name_of(E value) {
+  for (const auto& entry : enum_names<E>.entries)
+    if (entry.value == value) return std::string(entry.name);
+  return "?";
+}
+
+std::string name_of_combination(const ::testing::TestParamInfo<SgpdmObjectives::ParamType>& info) {
+  const auto& [approximation, back_constraint, dynamics, streams] = info.param;
+  return name_of(approximation) + "_" + name_of(back_constraint) + "_" + name_of(dynamics) + "_" +
+         std::to_string(streams);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Every, SgpdmObjectives,
+    ::testing::Combine(::testing::Values(CovarianceApproximation::full, CovarianceApproximation::fitc),
+                       ::testing::Values(BackConstraintKind::none, BackConstraintKind::mlp, BackConstraintKind::kbr),
+                       ::testing::Values(LatentDynamics::none, LatentDynamics::absolute, LatentDynamics::difference),
+                       ::testing::Values(1, 2)),
+    name_of_combination);
+
+TEST_P(SgpdmObjectives, AreEquation469) {
+  for (const bool learn_scale : {false, true})
+    for (const bool first_is_noise : {false, true}) {
+      const Combination c = combination(learn_scale, first_is_noise);
+      const double expected = textbook(problem(c));
+      SgpdmObjective objective(problem(c));
+      EXPECT_NEAR(objective.log_likelihood(objective.start(), nullptr), expected, 1e-9 * std::abs(expected));
+    }
+}
+
+TEST_P(SgpdmObjectives, HaveGradientsThatAgreeWithDifferences) {
+  double worst = 0;
+  for (std::uint64_t draw = 0; draw < 100; ++draw) {
+    SgpdmProblem drawn = problem(combination(draw % 2, draw % 4 < 2));
+    drawn.prior_deviation = draw % 3 ? 0 : 1.5;
+    SgpdmObjective objective(std::move(drawn));
+    const auto check = check_gradient(objective, objective.start() + 0.3 * gaussian(objective.size(), 1, draw));
+    EXPECT_TRUE(check.evaluated && check.cost_consistent);
+    EXPECT_LT(check.worst, 1e-6) << "draw " << draw << " at " << check.where;
+    worst = std::max(worst, check.worst);
+  }
+  RecordProperty("worst", std::to_string(worst * 1e9) + "e-9");
+}
+
+TEST(SgpdmObjective, FixedParametersHaveNoDerivative) {
+  SgpdmProblem p = problem({.approximation = CovarianceApproximation::fitc, .learn_scale = false});
+  p.fixed = {"latents", "inducing", "audio.white", "dynamics.inverse_width"};
+  SgpdmObjective objective(std::move(p));
+  double cost = 0;
+  Eigen::VectorXd g;
+  ASSERT_TRUE(objective.evaluate(objective.start(), cost, &g));
+  EXPECT_TRUE(g.head(14 + 3 * 6).isZero(0));
+  EXPECT_EQ((g.tail(12).array() == 0).count(), 2);
+  objective.hold_noise(true);
+  ASSERT_TRUE(objective.evaluate(objective.start(), cost, &g));
+  EXPECT_EQ((g.tail(12).array() == 0).count(), 4);
+  objective.hold_noise(false);
+  ASSERT_TRUE(objective.evaluate(objective.start(), cost, &g));
+  EXPECT_EQ((g.tail(12).array() == 0).count(), 2);
+  SgpdmProblem bad = problem({});
+  bad.fixed = {"audio.linear"};
+  EXPECT_THROW(SgpdmObjective{std::move(bad)}, std::invalid_argument);
+}
+
+TEST(SgpdmObjective, DoesNotLearnTheScaleOfAConstantDimension) {
+  SgpdmProblem p = problem({});
+  p.observations[0].values.col(1).setZero();
+  SgpdmObjective objective(std::move(p));
+  double cost = 0;
+  Eigen::VectorXd g;
+  ASSERT_TRUE(objective.evaluate(objective.start(), cost, &g));
+  const Eigen::VectorXd scales = g.segment(14, 5);
+  EXPECT_EQ(scales[1], 0);
+  EXPECT_TRUE((scales(Eigen::ArrayXi{{0, 2, 3, 4}}).array() != 0).all());
+}
+
+TEST(SgpdmObjective, GivesTheBackConstraintItWasTrainedTo) {
+  SgpdmProblem p = problem({.back_constraint = BackConstraintKind::mlp});
+  const Eigen::MatrixXd heard = p.observations[0].values;
+  SgpdmObjective objective(std::move(p));
+  const Eigen::VectorXd at = objective.start() + 0.1 * gaussian(objective.size(), 1, 1);
+  EXPECT_TRUE(latent_points(*objective.back_constraint(at), heard).isApprox(objective.latents(at), 1e-13));
+}
+
+}  // namespace
+}  // namespace talkgraph
