@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "nodes/latent/compact.h"
 #include "nodes/latent/lbfgs.h"
 #include "nodes/latent/scg.h"
 #include "nodes/latent/sgpdm_objective.h"
@@ -48,11 +49,6 @@ Eigen::Index allowed_dimension(int wanted, const std::vector<TrainingStream>& st
   return std::max<Eigen::Index>(1, d);
 }
 
-std::unique_ptr<GpLikelihood> likelihood_for(bool sparse) {
-  if (sparse) return std::make_unique<FitcLikelihood>();
-  return std::make_unique<FullLikelihood>();
-}
-
 /// Rows at even distances.
 Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count) {
   Eigen::MatrixXd chosen(count, x.cols());
@@ -72,12 +68,20 @@ Eigen::MatrixXd inputs_of_steps(const Eigen::MatrixXd& x, const Lengths& lengths
   return in;
 }
 
+Lengths lengths_of_steps(Lengths lengths) {
+  for (auto& length : lengths) --length;
+  std::erase(lengths, 0);
+  return lengths;
+}
+
 GpStream stream_of(const LatentTraining& options, std::string name, Kernel kernel, const Eigen::MatrixXd& inputs,
-                   double weight) {
+                   const Lengths& lengths, double weight) {
   const bool sparse = options.approximation != CovarianceApproximation::full && inputs.rows() > options.inducing;
   kernel.terms.push_back(WhiteTerm{std::max(options.noise, 2 * options.minimum_noise), options.minimum_noise});
-  return GpStream{std::move(name), std::move(kernel), spread(inputs, sparse ? options.inducing : 0),
-                  likelihood_for(sparse), weight};
+  return GpStream{
+      std::move(name), std::move(kernel), spread(inputs, sparse ? options.inducing : 0),
+      make_likelihood(sparse ? options.approximation : CovarianceApproximation::full, lengths, options.inducing),
+      weight};
 }
 
 std::optional<BackProjection> back_projection(const LatentTraining& options, const Eigen::MatrixXd& frames,
@@ -112,8 +116,8 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
   for (std::size_t i = 0; i < streams.size(); ++i) {
     larger = std::max(larger, frames[i].values.cols());
     problem.observations.push_back(
-        {stream_of(options, streams[i].name, observation, problem.latents, streams[i].weight), frames[i].values,
-         frames[i].scale, options.learn_scale});
+        {stream_of(options, streams[i].name, observation, problem.latents, lengths, streams[i].weight),
+         frames[i].values, frames[i].scale, options.learn_scale});
   }
   problem.dynamics_weight = options.dynamics_bias ? static_cast<double>(larger) / static_cast<double>(start.cols()) : 1;
   const bool steps = start.rows() > static_cast<Eigen::Index>(lengths.size());
@@ -123,7 +127,7 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
   }
   problem.dynamics =
       stream_of(options, "dynamics", Kernel{{RbfTerm{0.1, options.dynamics_inverse_width}, LinearTerm{1}}},
-                inputs_of_steps(problem.latents, lengths), problem.dynamics_weight);
+                inputs_of_steps(problem.latents, lengths), lengths_of_steps(lengths), problem.dynamics_weight);
   return problem;
 }
 
@@ -221,6 +225,23 @@ void maximise(const LatentTraining& options, int iterations, SgpdmObjective& obj
 
 }  // namespace
 
+std::unique_ptr<GpLikelihood> make_likelihood(CovarianceApproximation approximation, const Lengths& lengths,
+                                              Eigen::Index most) {
+  switch (approximation) {
+    case CovarianceApproximation::full:
+      return std::make_unique<FullLikelihood>();
+    case CovarianceApproximation::dtc:
+      return std::make_unique<DtcLikelihood>();
+    case CovarianceApproximation::fitc:
+      return std::make_unique<FitcLikelihood>();
+    case CovarianceApproximation::pitc:
+      return std::make_unique<PitcLikelihood>(blocks_within(lengths, most));
+    case CovarianceApproximation::variational:
+      return std::make_unique<VariationalLikelihood>();
+  }
+  throw std::logic_error("no such approximation");
+}
+
 TrainedLatents train_latents(const LatentTraining& options, const std::string& subject,
                              const std::vector<TrainingStream>& streams, const Lengths& lengths,
                              const StartValues& start, Context& context) {
@@ -239,16 +260,20 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
   const bool varies = std::any_of(frames.begin(), frames.end(), [](const auto& f) { return f.varies; });
   Checkpoint checkpoint(options.checkpoint, options.checkpoint.empty() ? Key{} : key_of(subject, objective, options));
   maximise(options, varies ? options.iterations : 0, objective, checkpoint, context);
-  const Eigen::VectorXd& parameters = checkpoint.state.parameters;
+  Eigen::VectorXd parameters = checkpoint.state.parameters;
+  const bool constrained = options.back_constraint != BackConstraintKind::none;
+  if (!constrained) parameters = rounded(parameters);
 
   trained.latents = objective.latents(parameters);
   for (std::size_t i = 0; i < streams.size(); ++i) {
-    trained.processes.push_back(objective.process(i, parameters));
+    trained.processes.push_back(compacted(objective.process(i, parameters), trained.latents));
     trained.processes.back().mean = frames[i].mean;
   }
   trained.first_frames = frames[0].values.array().rowwise() / trained.processes[0].scale.array();
+  if (!constrained) trained.first_frames = rounded(trained.first_frames);
   trained.dynamics = objective.dynamics(parameters);
   if (trained.dynamics) {
+    trained.dynamics = compacted(std::move(*trained.dynamics), trained.latents);
     trained.dynamics->mean = Eigen::RowVectorXd::Zero(d);
     trained.dynamics->scale = Eigen::RowVectorXd::Ones(d);
   }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "graph/context.h"
 #include "graph/description.h"
+#include "nodes/latent/gp_likelihood.h"
 #include "nodes/latent/optimiser.h"
 #include "nodes/types/sgpdm.h"
 
@@ -21,10 +23,14 @@ inline constexpr EnumNames<OutputScaling, 3> enum_names<OutputScaling>{{{OutputS
                                                                         {OutputScaling::common, "common"},
                                                                         {OutputScaling::none, "none"}}};
 
-enum class CovarianceApproximation { full, fitc };
+enum class CovarianceApproximation { full, dtc, fitc, pitc, variational };
 template <>
-inline constexpr EnumNames<CovarianceApproximation, 2> enum_names<CovarianceApproximation>{
-    {{CovarianceApproximation::full, "full"}, {CovarianceApproximation::fitc, "fitc"}}};
+inline constexpr EnumNames<CovarianceApproximation, 5> enum_names<CovarianceApproximation>{
+    {{CovarianceApproximation::full, "full"},
+     {CovarianceApproximation::dtc, "dtc"},
+     {CovarianceApproximation::fitc, "fitc"},
+     {CovarianceApproximation::pitc, "pitc"},
+     {CovarianceApproximation::variational, "variational"}}};
 
 enum class LatentDynamics { none, absolute, difference };
 template <>
@@ -107,6 +113,10 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
                              const std::vector<TrainingStream>& streams, const std::vector<std::int64_t>& lengths,
                              const StartValues& start, Context& context);
 
+/// The likelihood of N frames in sequences of these lengths; PITC has blocks of at most `most` frames.
+std::unique_ptr<GpLikelihood> make_likelihood(CovarianceApproximation approximation,
+                                              const std::vector<std::int64_t>& lengths, Eigen::Index most);
+
 template <class Node>
 void describe_training(Description<Node>& d) {
   const auto param = [&]<class M>(const char* name, M LatentTraining::*member) {
@@ -115,7 +125,10 @@ void describe_training(Description<Node>& d) {
   param("latent_dimension", &LatentTraining::latent_dimension)
       .at_least(1)
       .doc("lowered to the smallest stream's dimension and to the number of frames less one");
-  param("approximation", &LatentTraining::approximation).doc("of covariances of more frames than inducing points");
+  param("approximation", &LatentTraining::approximation)
+      .doc(
+          "of covariances of more frames than inducing points; blocks of PITC have as many frames as there are "
+          "inducing points, at most");
   param("inducing", &LatentTraining::inducing).at_least(1).doc("inducing points of each process");
   param("dynamics", &LatentTraining::dynamics)
       .doc("a process from each latent point to the next, or to the difference from it; none: a GPLVM");

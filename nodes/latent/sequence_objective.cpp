@@ -20,11 +20,17 @@ double SequenceObjective::dynamics(const Eigen::MatrixXd& x, bool with_gradient)
                          x.row(0).squaredNorm() / model_.first_variance);
   if (with_gradient) x_gradient_.row(0) -= weight / model_.first_variance * x.row(0);
   if (steps > 0) {
-    h_.compute(*model_.dynamics, x.topRows(steps));
-    value += h_.log_density(x.bottomRows(steps));
-    if (with_gradient)
-      h_.gradient(*model_.dynamics, x.topRows(steps), weight, x_gradient_.topRows(steps),
-                  x_gradient_.bottomRows(steps));
+    const auto from = x.topRows(steps);
+    step_ = x.bottomRows(steps);
+    if (model_.form == DynamicsForm::difference) step_ -= from;
+    h_.compute(*model_.dynamics, from);
+    value += h_.log_density(step_);
+    if (with_gradient) {
+      step_gradient_.setZero(steps, x.cols());
+      h_.gradient(*model_.dynamics, from, weight, x_gradient_.topRows(steps), step_gradient_);
+      x_gradient_.bottomRows(steps) += step_gradient_;
+      if (model_.form == DynamicsForm::difference) x_gradient_.topRows(steps) -= step_gradient_;
+    }
   }
   return weight * value;
 }

@@ -35,7 +35,7 @@ class SequenceObjective : public Objective {
   Eigen::MatrixXd before_;
   double follow_weight_ = 0;
   Predictive f_, g_, h_;
-  Eigen::MatrixXd x_, x_gradient_, audio_gradient_, visual_gradient_;
+  Eigen::MatrixXd x_, x_gradient_, audio_gradient_, visual_gradient_, step_, step_gradient_;
 };
 
 }  // namespace talkgraph

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
+#include "nodes/latent/back_constraint.h"
 #include "nodes/latent/scg.h"
 #include "nodes/latent/sequence_objective.h"
 #include "nodes/mapping/ssgpdm.h"
+#include "nodes/mapping/start_values.h"
 
 namespace talkgraph {
 
@@ -43,52 +44,12 @@ void check(const Ssgpdm& model, const Track& audio, const SegmentTrack& segments
     throw std::runtime_error(fmt::format("segments end at frame {} of {}", next, segments.frames));
 }
 
-Eigen::MatrixXd nearest_frames(const Sgpdm& state, const Eigen::MatrixXd& audio) {
-  Eigen::MatrixXd x(audio.rows(), state.latents.cols());
-  for (Eigen::Index t = 0; t < audio.rows(); ++t) {
-    Eigen::Index nearest = 0;
-    (state.audio_frames.rowwise() - audio.row(t)).rowwise().squaredNorm().minCoeff(&nearest);
-    x.row(t) = state.latents.row(nearest);
-  }
-  return x;
-}
-
-/// Frame of a window of `window` frames that frame t of `length` stands beside.
-Eigen::Index partner(Eigen::Index t, Eigen::Index length, Eigen::Index window, Eigen::Index offset) {
-  if (length <= window) return offset + t;
-  return static_cast<Eigen::Index>(
-      std::lround(static_cast<double>(t * (window - 1)) / static_cast<double>(length - 1)));
-}
-
-Eigen::MatrixXd nearest_window(const Sgpdm& state, const Eigen::MatrixXd& audio) {
-  const Eigen::Index length = audio.rows();
-  double least = std::numeric_limits<double>::infinity();
-  Eigen::Index best_start = 0, best_offset = 0, best_window = 1, start = 0;
-  for (const auto window : state.lengths) {
-    for (Eigen::Index offset = 0; offset <= std::max<Eigen::Index>(0, window - length); ++offset) {
-      double distance = 0;
-      for (Eigen::Index t = 0; t < length && distance < least; ++t)
-        distance += (state.audio_frames.row(start + partner(t, length, window, offset)) - audio.row(t)).squaredNorm();
-      if (distance >= least) continue;
-      least = distance;
-      best_start = start;
-      best_offset = offset;
-      best_window = window;
-    }
-    start += window;
-  }
-  Eigen::MatrixXd x(length, state.latents.cols());
-  for (Eigen::Index t = 0; t < length; ++t)
-    x.row(t) = state.latents.row(best_start + partner(t, length, best_window, best_offset));
-  return x;
-}
-
 /// The latent points of one segment.
 class SegmentSearch {
  public:
   SegmentSearch(const SynthesiseSsgpdm& node, const Sgpdm& state, const Eigen::MatrixXd& audio, const Boundary& before)
       : node_(node), state_(state), audio_(audio), before_(before) {
-    x_ = node.initial == LatentInitial::frame ? nearest_frames(state, audio) : nearest_window(state, audio);
+    x_ = start();
     optimiser_.iterations = node.iterations;
     optimiser_.step_tolerance = optimiser_.cost_tolerance = 1e-3;
   }
@@ -109,6 +70,23 @@ class SegmentSearch {
   }
 
  private:
+  Eigen::MatrixXd start() const {
+    switch (node_.initial) {
+      case LatentInitial::frame:
+        return nearest_frames(state_, audio_);
+      case LatentInitial::window:
+        return nearest_window(state_, audio_);
+      case LatentInitial::hmm:
+        return likeliest_path(state_, audio_, node_.hmm_states);
+      case LatentInitial::back_constraint:
+        break;
+    }
+    if (!state_.back_constraint)
+      throw std::runtime_error("state \"" + state_.label +
+                               "\" has no back-constraint to start from: train it with one (back_constraint of "
+                               "latent.sgpdm), or set initial to window");
+    return latent_points(*state_.back_constraint, audio_);
+  }
   void optimise(Eigen::Index from, Eigen::Index count, bool with_dynamics) {
     const Eigen::MatrixXd audio = audio_.middleRows(from, count);
     SequenceObjective objective(state_, audio, with_dynamics);
@@ -126,6 +104,7 @@ class SegmentSearch {
     for (Eigen::Index t = 1; t < x_.rows(); ++t) {
       h.compute(*state_.dynamics, x_.row(t - 1));
       x_.row(t) = h.mean();
+      if (state_.form == DynamicsForm::difference) x_.row(t) += x_.row(t - 1);
     }
   }
 
@@ -177,7 +156,7 @@ SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Tr
 }
 
 void describe(Description<SynthesiseSsgpdm>& d) {
-  d.type("mapping.ssgpdm_synthesise").version(1);
+  d.type("mapping.ssgpdm_synthesise").version(2);
   d.summary("visual features of new speech by a switching SGPDM").stored();
   d.source("Thesis §4.4, §5.3, Eqns 4.76-4.79, Algorithms 7 and 8, corrected as in docs/method.md §5");
   d.input("model", "the switching model")
@@ -188,7 +167,12 @@ void describe(Description<SynthesiseSsgpdm>& d) {
   d.param("method", &SynthesiseSsgpdm::method)
       .doc("optimise: Algorithm 7; predict: Algorithm 8; initial: nearest neighbours only");
   d.param("initial", &SynthesiseSsgpdm::initial)
-      .doc("start values: each frame's nearest training frame, or the nearest training window");
+      .doc(
+          "start values: each frame's nearest training frame, the nearest training window, the back-constraint, or the "
+          "likeliest path through training points as states of a hidden Markov model");
+  d.param("hmm_states", &SynthesiseSsgpdm::hmm_states)
+      .at_least(0)
+      .doc("most training points that are states of the hidden Markov model, a random subset of more; 0: all");
   d.param("smoothness", &SynthesiseSsgpdm::smoothness)
       .at_least(0)
       .doc("weight of the term that draws a segment's first frame to the end of the one before; 0: none");

@@ -18,12 +18,17 @@ inline constexpr EnumNames<LatentSearch, 3> enum_names<LatentSearch>{
     {{LatentSearch::optimise, "optimise"}, {LatentSearch::predict, "predict"}, {LatentSearch::initial, "initial"}}};
 
 enum class LatentInitial {
-  frame,  ///< each frame the latent point of its nearest training frame
-  window  ///< the latent path of the nearest training window, at its best offset or stretched
+  frame,            ///< each frame the latent point of its nearest training frame
+  window,           ///< the latent path of the nearest training window, at its best offset or stretched
+  back_constraint,  ///< that of the state
+  hmm               ///< the likeliest path through training points
 };
 template <>
-inline constexpr EnumNames<LatentInitial, 2> enum_names<LatentInitial>{
-    {{LatentInitial::frame, "frame"}, {LatentInitial::window, "window"}}};
+inline constexpr EnumNames<LatentInitial, 4> enum_names<LatentInitial>{
+    {{LatentInitial::frame, "frame"},
+     {LatentInitial::window, "window"},
+     {LatentInitial::back_constraint, "back_constraint"},
+     {LatentInitial::hmm, "hmm"}}};
 
 /// Visual features of new speech by a switching SGPDM, segment after segment
 /// (docs/method.md §5, Algorithms 7 and 8): start values from the state's nearest
@@ -33,8 +38,8 @@ inline constexpr EnumNames<LatentInitial, 2> enum_names<LatentInitial>{
 ///
 /// Audio and segments that differ by at most 2 frames are used on their common
 /// beginning. Throws std::runtime_error if they differ by more, if segments leave
-/// gaps or overlap, on another audio dimension than the model's, or on values
-/// that are not finite. No frames give no frames.
+/// gaps or overlap, on another audio dimension than the model's, on values that are
+/// not finite, or if a state lacks the back-constraint to start from. No frames give no frames.
 struct SynthesiseSsgpdm {
   struct Out {
     Track visual;     ///< T × D_Z, rate and start of the audio
@@ -42,6 +47,7 @@ struct SynthesiseSsgpdm {
   };
   LatentSearch method = LatentSearch::optimise;
   LatentInitial initial = LatentInitial::window;
+  int hmm_states = 500;
   double smoothness = 1;
   bool dynamics = true;
   int iterations = 15;

@@ -1,8 +1,10 @@
 #include "nodes/types/sgpdm.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "nodes/types/gpdm.h"
+#include "nodes/types/pile.h"
 #include "nodes/types/ssgpdm.h"
 
 namespace talkgraph {
@@ -81,14 +83,65 @@ void fields(Archive& ar, Kernel& k) {
   }
 }
 
-void fields(Archive& ar, GaussianProcess& g) {
+namespace {
+
+/// The rows of a lower triangle, one after the other.
+std::vector<double> triangle_of(const Eigen::MatrixXd& root) {
+  std::vector<double> rows;
+  for (Eigen::Index i = 0; i < root.rows(); ++i)
+    rows.insert(rows.end(), root.row(i).begin(), root.row(i).begin() + i + 1);
+  return rows;
+}
+
+Eigen::MatrixXd from_triangle(const std::vector<double>& rows) {
+  const auto k = static_cast<Eigen::Index>((std::sqrt(8.0 * static_cast<double>(rows.size()) + 1) - 1) / 2 + 0.5);
+  if (k * (k + 1) / 2 != static_cast<Eigen::Index>(rows.size()))
+    throw std::runtime_error("a stored triangle has " + std::to_string(rows.size()) + " entries; train the model anew");
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(k, k);
+  auto at = rows.begin();
+  for (Eigen::Index i = 0; i < k; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) root(i, j) = *at++;
+  return root;
+}
+
+/// All but the basis. Of a triangular root the triangle is kept.
+void prediction_fields(Archive& ar, GaussianProcess& g) {
   ar("kernel", g.kernel);
-  ar("basis", g.basis);
   ar("weights", g.weights);
   ar("reduction", g.reduction);
-  ar("root", g.root);
+  std::optional<Eigen::MatrixXd> root;
+  std::optional<std::vector<double>> triangle;
+  if (!ar.loading() && g.root.rows() == g.root.cols() && g.root.isLowerTriangular(0))
+    triangle = triangle_of(g.root);
+  else if (!ar.loading())
+    root = g.root;
+  ar("root", root);
+  ar("triangle", triangle);
+  if (ar.loading()) g.root = triangle ? from_triangle(*triangle) : root.value_or(Eigen::MatrixXd());
   ar("mean", g.mean);
   ar("scale", g.scale);
+}
+
+/// A process of a model whose latent points are `inputs`; a basis that is those is not kept again.
+struct ProcessOfModel {
+  GaussianProcess& process;
+  const Eigen::MatrixXd& inputs;
+};
+void fields(Archive& ar, ProcessOfModel& p) {
+  Eigen::MatrixXd& basis = p.process.basis;
+  const bool exact = basis.rows() == p.inputs.rows() && basis.cols() == p.inputs.cols() && basis == p.inputs;
+  std::optional<Eigen::MatrixXd> own;
+  if (!ar.loading() && !exact) own = basis;
+  ar("basis", own);
+  if (ar.loading()) basis = own ? std::move(*own) : p.inputs;
+  prediction_fields(ar, p.process);
+}
+
+}  // namespace
+
+void fields(Archive& ar, GaussianProcess& g) {
+  ar("basis", g.basis);
+  prediction_fields(ar, g);
 }
 
 void fields(Archive& ar, BackConstraint& b) {
@@ -109,8 +162,9 @@ void fields(Archive& ar, Sgpdm& s) {
   ar("latents", s.latents);
   ar("lengths", s.lengths);
   ar("audio_frames", s.audio_frames);
-  ar("audio", s.audio);
-  ar("visual", s.visual);
+  ProcessOfModel audio{s.audio, s.latents}, visual{s.visual, s.latents};
+  ar("audio", audio);
+  ar("visual", visual);
   ar("dynamics", s.dynamics);
   ar("form", s.form);
   ar("back_constraint", s.back_constraint);
@@ -126,7 +180,8 @@ void fields(Archive& ar, Gpdm& g) {
   ar("latents", g.latents);
   ar("lengths", g.lengths);
   ar("names", g.names);
-  ar("observations", g.observations);
+  ProcessOfModel observations{g.observations, g.latents};
+  ar("observations", observations);
   ar("dynamics", g.dynamics);
   ar("form", g.form);
   ar("back_constraint", g.back_constraint);
@@ -138,7 +193,12 @@ void fields(Archive& ar, Gpdm& g) {
 }
 
 void fields(Archive& ar, Ssgpdm& s) {
-  ar("states", s.states);
+  std::size_t size = s.states.size();
+  std::vector<Sgpdm> loaded;
+  auto state = s.states.begin();
+  Pile::keep(ar, "states", size, [&](Archive& pile, std::size_t) {
+    fields(pile, ar.loading() ? loaded.emplace_back() : (state++)->second);
+  });
   std::vector<std::string> phones, labels;
   for (const auto& [phone, label] : s.ending) {
     phones.push_back(phone);
@@ -147,6 +207,8 @@ void fields(Archive& ar, Ssgpdm& s) {
   ar("ending_phones", phones);
   ar("ending_labels", labels);
   if (!ar.loading()) return;
+  s.states.clear();
+  for (auto& l : loaded) s.states.emplace(l.label, std::move(l));
   s.ending.clear();
   for (std::size_t i = 0; i < phones.size() && i < labels.size(); ++i) s.ending[phones[i]] = labels[i];
 }
