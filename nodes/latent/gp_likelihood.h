@@ -83,15 +83,15 @@ class LowRankLikelihood : public GpLikelihood {
   /// n frames, from `first`.
   struct Block {
     Eigen::Index first = 0, n = 0;
-    KernelMatrix cross;             // K_fu
-    Eigen::MatrixXd v;              // K_fu Lu⁻ᵀ
-    Eigen::MatrixXd whitened;       // R⁻¹ V
-    Eigen::MatrixXd outputs;        // R⁻¹ Y
-    Eigen::VectorXd conditional;    // diagonal of k(X, X) − Q
-    KernelMatrix own;               // k(X, X), where Λ has more than a diagonal
-    Eigen::MatrixXd covariance, g;  // Λ, and the derivative by it, where it has more than a diagonal
-    Cholesky factor;                // of that
-    Eigen::VectorXd lambda, root;   // the diagonal of a diagonal Λ, and its square root
+    KernelMatrix cross;                    // K_fu
+    Eigen::MatrixXd v;                     // K_fu Lu⁻ᵀ
+    Eigen::MatrixXd whitened;              // R⁻¹ V
+    Eigen::MatrixXd outputs;               // R⁻¹ Y
+    Eigen::VectorXd conditional;           // diagonal of k(X, X) − Q
+    KernelMatrix own;                      // k(X, X), where Λ has more than a diagonal
+    Eigen::MatrixXd covariance, g;         // Λ, and the derivative by it, where it has more than a diagonal
+    Cholesky factor;                       // of that
+    Eigen::VectorXd lambda, inverse_root;  // the diagonal of a diagonal Λ, and that of its R⁻¹
   };
 
   /// Lengths of the blocks that N frames are taken in.
@@ -99,11 +99,11 @@ class LowRankLikelihood : public GpLikelihood {
   /// Computes Λ of a block and brings `whitened` (V) and `outputs` (Y) to R⁻¹V and R⁻¹Y; returns −½ D ln|Λ| and
   /// whatever else the type adds to ln p.
   virtual double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) = 0;
-  /// M ← R⁻ᵀ M.
-  virtual void unwhiten(const Block& block, MatrixView m) const = 0;
-  /// From α = K⁻¹Y and S = R⁻¹V La⁻ᵀ of the block, which give the derivative by Λ, ½(ααᵀ − D R⁻ᵀ(I − SSᵀ)R⁻¹), adds
-  /// to the derivatives by V, by the block's inputs and the kernel's parameters.
-  virtual void differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
+  /// Adds R⁻ᵀ M to `sum`, using M up.
+  virtual void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const = 0;
+  /// From α = K⁻¹Y and S = R⁻¹V La⁻ᵀ, which give the derivative by Λ, ½(ααᵀ − D R⁻ᵀ(I − SSᵀ)R⁻¹), adds to those by the
+  /// block's inputs and the kernel's parameters. Where Λ depends on V, sets what V gets from it and returns true.
+  virtual bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
                              const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) = 0;
 
  private:
@@ -114,9 +114,10 @@ class LowRankLikelihood : public GpLikelihood {
   std::vector<Block> blocks_;
   KernelMatrix kuu_;
   Cholesky lu_, la_;
-  Eigen::MatrixXd a_, c_, b_, weights_;               // A, La⁻¹ Σ (R⁻¹V)ᵀ R⁻¹Y, La⁻ᵀ c, Lu⁻ᵀ b
-  Eigen::MatrixXd lu_inverse_, la_inverse_, e_;       // e: (dL/dV)ᵀ V
-  Eigen::MatrixXd alpha_, v_gradient_, uu_gradient_;  // of one block, of one block, of K_uu
+  Eigen::MatrixXd a_, c_, b_;  // A, La⁻¹ Σ (R⁻¹V)ᵀ R⁻¹Y, La⁻ᵀ c
+  Eigen::MatrixXd lu_inverse_, la_inverse_, scaled_la_inverse_, e_;
+  Eigen::MatrixXd residual_, alpha_, v_gradient_;  // of one block
+  Eigen::MatrixXd uu_gradient_;
 };
 
 /// A low-rank likelihood whose Λ is diagonal; types differ in what they make of the conditional variances
@@ -132,8 +133,8 @@ class DiagonalLikelihood : public LowRankLikelihood {
  private:
   const std::vector<Eigen::Index>& lengths(Eigen::Index n) final;
   double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) final;
-  void unwhiten(const Block& block, MatrixView m) const final;
-  void differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
+  void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const final;
+  bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
                      const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) final;
 
   std::vector<Eigen::Index> lengths_;
@@ -171,8 +172,8 @@ class PitcLikelihood : public LowRankLikelihood {
  private:
   const std::vector<Eigen::Index>& lengths(Eigen::Index n) override;
   double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) override;
-  void unwhiten(const Block& block, MatrixView m) const override;
-  void differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
+  void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const override;
+  bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
                      const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) override;
 
   std::vector<Eigen::Index> lengths_;

@@ -35,6 +35,12 @@ void each(K& kernel, F f) {
   }
 }
 
+double bias_variance(const Kernel& kernel) {
+  double sum = 0;
+  each(kernel, Overload{[&](const BiasTerm& t, Eigen::Index) { sum += t.variance; }, [](const auto&, Eigen::Index) {}});
+  return sum;
+}
+
 }  // namespace
 
 Eigen::Index parameter_count(const Kernel& kernel) {
@@ -131,33 +137,36 @@ void require_dimension(const Kernel& kernel, Eigen::Index dimension) {
                         [](const auto&, Eigen::Index) {}});
 }
 
-void KernelMatrix::add_rbf(double variance, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& values) {
+void KernelMatrix::add_rbf(double variance, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& values,
+                           Eigen::MatrixXd& sum) {
   values.resize(a.rows(), b.rows());
   for (Eigen::Index j = 0; j < b.rows(); ++j) {
     point_ = b.row(j);
     rbf::values(variance, widths_.data(), a.cols(), a.data(), a.outerStride(), a.rows(), point_.data(),
-                values.col(j).data());
+                values.col(j).data(), sum.col(j).data());
   }
-  value_ += values;
 }
 
 const Eigen::MatrixXd& KernelMatrix::compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b) {
+  compute(kernel, a, b, value_);
+  return value_;
+}
+
+void KernelMatrix::compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& value) {
   require_dimension(kernel, a.cols());
-  value_.setZero(a.rows(), b.rows());
+  value.setConstant(a.rows(), b.rows(), bias_variance(kernel));
   rbf_.resize(kernel.terms.size());
   std::size_t index = 0;
   each(kernel, Overload{[&](const RbfTerm& t, Eigen::Index) {
                           widths_.setConstant(a.cols(), t.inverse_width);
-                          add_rbf(t.variance, a, b, rbf_[index++]);
+                          add_rbf(t.variance, a, b, rbf_[index++], value);
                         },
                         [&](const ArdTerm& t, Eigen::Index) {
                           widths_ = t.inverse_widths;
-                          add_rbf(t.variance, a, b, rbf_[index++]);
+                          add_rbf(t.variance, a, b, rbf_[index++], value);
                         },
-                        [&](const LinearTerm& t, Eigen::Index) { value_.noalias() += t.variance * a * b.transpose(); },
-                        [&](const BiasTerm& t, Eigen::Index) { value_.array() += t.variance; },
-                        [](const WhiteTerm&, Eigen::Index) {}});
-  return value_;
+                        [&](const LinearTerm& t, Eigen::Index) { value.noalias() += t.variance * a * b.transpose(); },
+                        [](const auto&, Eigen::Index) {}});
 }
 
 /// Returns the derivative by the log variance; those by the log inverse widths are −½ · inverse width · squares_.

@@ -10,6 +10,17 @@
 
 namespace talkgraph {
 
+namespace {
+
+/// Adds Aᵀ B, known to be symmetric, to `sum`, of whose upper right quarter nothing is kept.
+void add_symmetric(const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& sum) {
+  const Eigen::Index half = sum.rows() / 2, rest = sum.rows() - half;
+  sum.topLeftCorner(half, half).noalias() += a.leftCols(half).transpose() * b.leftCols(half);
+  sum.bottomRows(rest).noalias() += a.rightCols(rest).transpose() * b;
+}
+
+}  // namespace
+
 void LowRankLikelihood::divide(Eigen::Index n) {
   const auto& sizes = lengths(n);
   blocks_.resize(sizes.size());
@@ -20,6 +31,7 @@ void LowRankLikelihood::divide(Eigen::Index n) {
     first += sizes[i];
     most = std::max(most, sizes[i]);
   }
+  residual_.resize(most, c_.cols());
   alpha_.resize(most, c_.cols());
   v_gradient_.resize(most, a_.cols());
 }
@@ -42,9 +54,8 @@ double LowRankLikelihood::factorise(const Kernel& kernel, const ConstMatrix& x, 
   double value = 0;
   for (Block& block : blocks_) {
     const auto inputs = x.middleRows(block.first, block.n);
-    block.v = block.cross.compute(kernel, inputs, u);
+    block.cross.compute(kernel, inputs, u, block.v);
     solve_transposed_right(lu_.factor(), block.v);
-    block.whitened = block.v;
     block.outputs = y.middleRows(block.first, block.n);
     value += condition(kernel, inputs, block);
     a_.selfadjointView<Eigen::Lower>().rankUpdate(block.whitened.transpose());
@@ -74,38 +85,46 @@ double LowRankLikelihood::evaluate(const Kernel& kernel, const ConstMatrix& x, c
 }
 
 // Let V not depend on Λ: then dL/dV = α bᵀ − D Λ⁻¹V A⁻¹, b = Vᵀα. What reaches V by way of Λ is added. V reaches the
-// likelihood by V Vᵀ alone, so that K_uu has −½ Lu⁻ᵀ (dL/dV)ᵀ V Lu⁻¹.
+// likelihood by V Vᵀ alone, so that K_uu has −½ Lu⁻ᵀ E Lu⁻¹ with E = (dL/dV)ᵀ V, to which the first part gives
+// b bᵀ − D(I − A⁻¹).
 // A is not below I, so that its inverted factor, of a norm of at most 1, is as good as solving with it.
 void LowRankLikelihood::add_gradient(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u,
                                      GpGradient& gradient) {
   const double d = static_cast<double>(c_.cols());
   invert_lower(lu_.factor(), lu_inverse_);
   invert_lower(la_.factor(), la_inverse_);
-  e_.setZero(u.rows(), u.rows());
+  e_.setIdentity(u.rows(), u.rows());
+  e_ *= -d;
+  e_.selfadjointView<Eigen::Lower>().rankUpdate(la_inverse_.transpose(), d);
+  e_.selfadjointView<Eigen::Lower>().rankUpdate(b_);
+  scaled_la_inverse_ = -d * la_inverse_;
   for (Block& block : blocks_) {
     const auto inputs = x.middleRows(block.first, block.n);
     MatrixView x_gradient = gradient.inputs.middleRows(block.first, block.n);
-    MatrixView alpha = alpha_.topRows(block.n), v_gradient = v_gradient_.topRows(block.n);
+    MatrixView residual = residual_.topRows(block.n), alpha = alpha_.topRows(block.n);
+    MatrixView v_gradient = v_gradient_.topRows(block.n);
     multiply_transposed_right(la_inverse_, block.whitened);
-    alpha = block.outputs;
-    alpha.noalias() -= block.whitened * c_;
-    unwhiten(block, alpha);
+    residual = block.outputs;
+    residual.noalias() -= block.whitened * c_;
+    alpha.setZero();
+    add_unwhitened(block, residual, alpha);
     gradient.outputs.middleRows(block.first, block.n) = -alpha;
-    v_gradient.noalias() = alpha * b_.transpose();
-    differentiate(kernel, inputs, block, alpha, block.whitened, v_gradient, x_gradient, gradient.kernel);
-    multiply_right(la_inverse_, block.whitened);
-    unwhiten(block, block.whitened);
-    v_gradient -= d * block.whitened;
-    e_.noalias() += v_gradient.transpose() * block.v;
+    if (differentiate(kernel, inputs, block, alpha, block.whitened, v_gradient, x_gradient, gradient.kernel))
+      add_symmetric(v_gradient, block.v, e_);
+    else
+      v_gradient.setZero();
+    multiply_right(scaled_la_inverse_, block.whitened);
+    add_unwhitened(block, block.whitened, v_gradient);
+    v_gradient.noalias() += alpha * b_.transpose();
     multiply_right(lu_inverse_, v_gradient);
     block.cross.gradient(kernel, inputs, u, v_gradient, x_gradient, gradient.inducing, gradient.kernel);
   }
+  e_.triangularView<Eigen::StrictlyUpper>() = e_.transpose();
   multiply_right(lu_inverse_, e_);
-  uu_gradient_ = e_.transpose();
+  uu_gradient_ = -0.5 * e_.transpose();
   multiply_right(lu_inverse_, uu_gradient_);
-  e_ = -0.25 * (uu_gradient_ + uu_gradient_.transpose());
-  lu_.add_jitter_gradient(e_);
-  kuu_.gradient(kernel, u, u, e_, gradient.inducing, gradient.inducing, gradient.kernel);
+  lu_.add_jitter_gradient(uu_gradient_);
+  kuu_.gradient(kernel, u, u, uu_gradient_, gradient.inducing, gradient.inducing, gradient.kernel);
 }
 
 // The reduction is Lu⁻ᵀ (I − A⁻¹) Lu⁻¹; the eigenvalues of A are at least 1.

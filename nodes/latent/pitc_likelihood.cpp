@@ -25,32 +25,35 @@ double PitcLikelihood::condition(const Kernel& kernel, const ConstMatrix& x, Blo
   block.factor.compute(block.covariance, 0, "PITC: the conditional covariance of a block");
   note(block.factor);
   const auto lower = block.factor.factor().triangularView<Eigen::Lower>();
+  block.whitened = block.v;
   lower.solveInPlace(block.whitened);
   lower.solveInPlace(block.outputs);
   return -0.5 * static_cast<double>(block.outputs.cols()) * block.factor.log_determinant();
 }
 
-void PitcLikelihood::unwhiten(const Block& block, MatrixView m) const {
+void PitcLikelihood::add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const {
   block.factor.factor().triangularView<Eigen::Lower>().transpose().solveInPlace(m);
+  sum += m;
 }
 
-void PitcLikelihood::differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
+bool PitcLikelihood::differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
                                    const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient,
                                    VectorView logs) {
-  const double outputs = static_cast<double>(alpha.cols());
+  const auto upper = block.factor.factor().triangularView<Eigen::Lower>().transpose();
   Eigen::MatrixXd& g = block.g;
   g.setIdentity(block.n, block.n);
   g.noalias() -= s * s.transpose();
-  unwhiten(block, g);
+  upper.solveInPlace(g);
   g.transposeInPlace();
-  unwhiten(block, g);
-  g *= -0.5 * outputs;
+  upper.solveInPlace(g);
+  g *= -0.5 * static_cast<double>(alpha.cols());
   g.noalias() += 0.5 * alpha * alpha.transpose();
   g.triangularView<Eigen::StrictlyUpper>() = g.transpose();
   block.factor.add_jitter_gradient(g);
-  v_gradient.noalias() -= 2 * g * block.v;
   white_gradient(kernel, g.trace(), logs);
   block.own.gradient(kernel, x, x, g, x_gradient, x_gradient, logs);
+  v_gradient.noalias() = -2 * g * block.v;
+  return true;
 }
 
 std::vector<Eigen::Index> blocks_within(const std::vector<std::int64_t>& sequences, Eigen::Index most) {

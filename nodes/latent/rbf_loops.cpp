@@ -13,7 +13,7 @@ namespace talkgraph::rbf {
 
 TALKGRAPH_VECTORISED
 void values(double variance, const double* inverse_widths, Eigen::Index dimension, const double* a, Eigen::Index stride,
-            Eigen::Index n, const double* b, double* values) {
+            Eigen::Index n, const double* b, double* values, double* sums) {
   for (Eigen::Index i = 0; i < n; ++i) values[i] = 0;
   for (Eigen::Index c = 0; c < dimension; ++c) {
     const double* column = a + c * stride;
@@ -46,6 +46,7 @@ void values(double variance, const double* inverse_widths, Eigen::Index dimensio
     series = (series * r + 1) * r + 1;
     const double power = std::bit_cast<double>((std::bit_cast<std::uint64_t>(shifted) + 1023) << 52);
     values[i] = x < -708 ? 0 : variance * (power * series);
+    sums[i] += values[i];
   }
 }
 

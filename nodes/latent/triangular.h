@@ -6,9 +6,10 @@
 namespace talkgraph {
 
 using MatrixBlock = Eigen::Ref<Eigen::MatrixXd>;
+using ConstMatrixBlock = Eigen::Ref<const Eigen::MatrixXd>;
 
 /// B ← B L⁻ᵀ.
-void solve_transposed_right(const Eigen::MatrixXd& l, MatrixBlock b);
+void solve_transposed_right(const ConstMatrixBlock& l, MatrixBlock b);
 /// B ← B L, which BLAS does in place (Eigen's product of a triangular matrix makes copies).
 void multiply_right(const Eigen::MatrixXd& l, MatrixBlock b);
 /// B ← B Lᵀ.
