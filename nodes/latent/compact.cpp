@@ -10,12 +10,6 @@ namespace talkgraph {
 
 namespace {
 
-/// To the nearest double whose lower 32 bits are zero.
-double rounded(double value) {
-  constexpr std::uint64_t half = std::uint64_t{1} << 31, below = ~std::uint64_t{0xffffffff};
-  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(value) + half) & below);
-}
-
 /// L with L Lᵀ = root · rootᵀ.
 Eigen::MatrixXd lower_root(const Eigen::MatrixXd& root) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.transpose());
@@ -35,16 +29,22 @@ bool predicts_alike(const GaussianProcess& a, const GaussianProcess& b, const Co
 
 }  // namespace
 
-Eigen::MatrixXd rounded(const Eigen::MatrixXd& m) {
-  return m.unaryExpr([](double v) { return rounded(v); });
+Eigen::MatrixXd rounded(const Eigen::MatrixXd& m, int bits) {
+  const std::uint64_t place = std::uint64_t{1} << (52 - bits);
+  return m.unaryExpr([place](double v) {
+    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(v) + place / 2) & ~(place - 1));
+  });
 }
 
 GaussianProcess compacted(GaussianProcess gp, const ConstMatrix& x) {
   if (gp.root.size() > 0) gp.root = lower_root(gp.root);
   GaussianProcess coarse = gp;
-  coarse.weights = rounded(gp.weights);
-  coarse.root = rounded(gp.root);
-  return predicts_alike(gp, coarse, x) ? coarse : gp;
+  for (const int bits : {16, 20}) {
+    coarse.weights = rounded(gp.weights, bits);
+    coarse.root = rounded(gp.root, bits);
+    if (predicts_alike(gp, coarse, x)) return coarse;
+  }
+  return gp;
 }
 
 }  // namespace talkgraph

@@ -262,7 +262,7 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
   maximise(options, varies ? options.iterations : 0, objective, checkpoint, context);
   Eigen::VectorXd parameters = checkpoint.state.parameters;
   const bool constrained = options.back_constraint != BackConstraintKind::none;
-  if (!constrained) parameters = rounded(parameters);
+  if (!constrained) parameters = rounded(parameters, 20);
 
   trained.latents = objective.latents(parameters);
   for (std::size_t i = 0; i < streams.size(); ++i) {
@@ -270,7 +270,7 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
     trained.processes.back().mean = frames[i].mean;
   }
   trained.first_frames = frames[0].values.array().rowwise() / trained.processes[0].scale.array();
-  if (!constrained) trained.first_frames = rounded(trained.first_frames);
+  if (!constrained) trained.first_frames = rounded(trained.first_frames, 12);
   trained.dynamics = objective.dynamics(parameters);
   if (trained.dynamics) {
     trained.dynamics = compacted(std::move(*trained.dynamics), trained.latents);

@@ -17,7 +17,7 @@ struct SaveModel {
 void describe(Description<SaveModel>& d);
 
 /// The format marker in every model file.
-inline constexpr const char* model_format = "talkgraph model 3";
+inline constexpr const char* model_format = "talkgraph model 4";
 
 /// Throws std::runtime_error if the file is missing, foreign or damaged.
 TalkingFace load_model(const std::string& file);

@@ -1,13 +1,17 @@
 #include "nodes/mapping/ssgpdm.h"
 
 #include <gtest/gtest.h>
+#include <time.h>
 
 #include <filesystem>
 
+#include "nodes/latent/compact.h"
+#include "nodes/latent/predictive.h"
 #include "nodes/latent/sequence_objective.h"
 #include "nodes/latent/sgpdm.h"
 #include "nodes/mapping/register.h"
 #include "nodes/mapping/ssgpdm_synthesise.h"
+#include "nodes/mapping/start_values.h"
 #include "tests/nodes/latent/gaussian.h"
 #include "tests/temporary_folder.h"
 
@@ -127,6 +131,95 @@ TEST(Synthesis, FollowsTheTruthWithEveryMethod) {
     }
 }
 
+/// The model with the given dynamics and a back-constraint in every state.
+Ssgpdm constrained(LatentDynamics dynamics) {
+  Context context;
+  TrainSgpdm train;
+  train.latent_dimension = 2;
+  train.iterations = 40;
+  train.dynamics = dynamics;
+  train.back_constraint = BackConstraintKind::kbr;
+  train.kbr_inverse_width = 0.1;
+  Collected<Sgpdm> states;
+  states.add("b", train(half("b", pi, 25, 4), context));
+  return AssembleSsgpdm{}(states);
+}
+
+TEST(Synthesis, FollowsTheTruthFromEveryStartWithEveryDynamics) {
+  const auto s = speech(8);
+  Context context;
+  const double variance = (s.visual.values.rowwise() - s.visual.values.colwise().mean()).squaredNorm();
+  for (const auto dynamics : {LatentDynamics::none, LatentDynamics::absolute, LatentDynamics::difference}) {
+    const Ssgpdm states = constrained(dynamics);
+    for (const auto initial :
+         {LatentInitial::frame, LatentInitial::window, LatentInitial::back_constraint, LatentInitial::hmm})
+      for (const auto method : {LatentSearch::optimise, LatentSearch::initial}) {
+        SynthesiseSsgpdm node;
+        node.method = method;
+        node.initial = initial;
+        const auto out = node(states, s.audio, segments_of({{"b", 4}, {"b", 4}}), context);
+        EXPECT_LT((out.visual.values - s.visual.values).squaredNorm() / variance, 0.2);
+      }
+    SynthesiseSsgpdm predict;
+    predict.method = LatentSearch::predict;
+    const auto out = predict(states, s.audio, segments_of({{"b", 4}, {"b", 4}}), context);
+    EXPECT_LT((out.visual.values - s.visual.values).squaredNorm() / variance, 0.5);
+  }
+}
+
+TEST(Synthesis, RefusesABackConstraintThatIsNotThere) {
+  Context context;
+  SynthesiseSsgpdm node;
+  node.initial = LatentInitial::back_constraint;
+  try {
+    node(model(), speech(4).audio, segments_of({{"b", 4}}), context);
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("state \"b\" has no back-constraint"), std::string::npos) << e.what();
+  }
+}
+
+/// ln p of a path through training points, Eqns 4.81 and 4.82.
+double path_score(const Sgpdm& state, const Eigen::MatrixXd& audio, const Eigen::MatrixXd& x) {
+  Predictive f, h;
+  f.compute(state.audio, x);
+  double score = f.log_density(audio) - 0.5 * (static_cast<double>(x.cols()) * std::log(2 * pi * state.first_variance) +
+                                               x.row(0).squaredNorm() / state.first_variance);
+  if (state.dynamics && x.rows() > 1) {
+    h.compute(*state.dynamics, x.topRows(x.rows() - 1));
+    score += h.log_density(x.bottomRows(x.rows() - 1));
+  }
+  return score;
+}
+
+TEST(StartValues, OfTheHiddenMarkovModelAreTheBestOfAllPaths) {
+  const Sgpdm& full = model().states.at("b");
+  Sgpdm state = full;
+  state.latents = full.latents({0, 5, 10, 20, 40, 61, 83}, Eigen::all);
+  Eigen::MatrixXd audio = speech(3).audio.values;
+  audio = scaled(state.audio, audio);
+  const Eigen::MatrixXd found = likeliest_path(state, audio, 0);
+  double best = -1e300;
+  Eigen::MatrixXd x(3, state.latents.cols());
+  for (Eigen::Index i = 0; i < 7; ++i)
+    for (Eigen::Index j = 0; j < 7; ++j)
+      for (Eigen::Index k = 0; k < 7; ++k) {
+        x << state.latents.row(i), state.latents.row(j), state.latents.row(k);
+        best = std::max(best, path_score(state, audio, x));
+      }
+  EXPECT_NEAR(path_score(state, audio, found), best, 1e-9 * std::abs(best));
+}
+
+TEST(StartValues, OfTheHiddenMarkovModelMayUseASubset) {
+  const Sgpdm& state = model().states.at("b");
+  const Eigen::MatrixXd audio = scaled(state.audio, speech(6).audio.values);
+  const Eigen::MatrixXd all = likeliest_path(state, audio, 0), some = likeliest_path(state, audio, 20);
+  EXPECT_EQ(some, likeliest_path(state, audio, 20));
+  EXPECT_GE(path_score(state, audio, all), path_score(state, audio, some));
+  EXPECT_EQ(all, likeliest_path(state, audio, 100));
+  EXPECT_EQ(likeliest_path(state, audio.topRows(1), 1).rows(), 1);
+}
+
 TEST(Synthesis, AnswersUnknownLabelsAndAnySegmentLength) {
   const auto s = speech(30);
   Context context;
@@ -221,6 +314,99 @@ TEST(Ssgpdm, SynthesisesTheSameAfterSavingAndLoading) {
   const auto parts = segments_of({{"b", 4}, {"q-a", 4}});
   EXPECT_EQ(SynthesiseSsgpdm{}(saved, s.audio, parts, context).visual.values,
             SynthesiseSsgpdm{}(loaded, s.audio, parts, context).visual.values);
+}
+
+double cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+TEST(Synthesis, OptimisesSevenFramesInAStateOfTwoHundredInTwoMilliseconds) {
+  Context context;
+  TrainSgpdm train;
+  const Sgpdm state = train(half("b", pi, 40, 5), context);
+  ASSERT_EQ(state.latents.rows(), 200);
+  const Eigen::MatrixXd audio = scaled(state.audio, speech(7).audio.values);
+  double least = 1;
+  for (int i = 0; i < 20; ++i) {
+    const double start = cpu_seconds();
+    segment_latents(SynthesiseSsgpdm{}, state, audio, {});
+    least = std::min(least, cpu_seconds() - start);
+  }
+  RecordProperty("microseconds", static_cast<int>(1e6 * least));
+  EXPECT_LT(least, 2e-3);
+}
+
+/// A state of that many frames, in windows of five, with numbers as training leaves them.
+Sgpdm random_state(const std::string& label, Eigen::Index frames, Random& random) {
+  const auto draw = [&](Eigen::Index rows, Eigen::Index cols, int bits = 16) {
+    return rounded(Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return random.normal(); }), bits);
+  };
+  const Eigen::Index d = std::min<Eigen::Index>(5, std::max<Eigen::Index>(1, frames - 1));
+  Sgpdm s;
+  s.label = label;
+  s.latents = draw(frames, d, 20);
+  s.audio_frames = draw(frames, 20, 12);
+  for (Eigen::Index left = frames; left > 0; left -= 5) s.lengths.push_back(std::min<Eigen::Index>(left, 5));
+  const auto process = [&](Kernel kernel, Eigen::Index inputs, Eigen::Index outputs) {
+    kernel.terms.push_back(WhiteTerm{0.4, 1e-3});
+    const Eigen::Index k = std::min<Eigen::Index>(inputs, 100);
+    return GaussianProcess{kernel,
+                           inputs == frames && frames <= 100 ? s.latents : draw(k, d, 20),
+                           draw(k, outputs),
+                           {},
+                           draw(k, k).triangularView<Eigen::Lower>(),
+                           draw(1, outputs).row(0),
+                           draw(1, outputs).row(0)};
+  };
+  s.audio = process({{RbfTerm{}, BiasTerm{}}}, frames, 20);
+  s.visual = process({{RbfTerm{}, BiasTerm{}}}, frames, 33);
+  const auto steps = frames - static_cast<Eigen::Index>(s.lengths.size());
+  if (steps > 0) s.dynamics = process({{RbfTerm{}, LinearTerm{}}}, steps, d);
+  s.trace.assign(21, -1000.5);
+  return s;
+}
+
+/// Frames of a state at a share of all states, in the order of their size: the built-in speaker's 270 sentences.
+Eigen::Index occupancy(double share) {
+  const std::vector<std::pair<double, double>> at = {{0, 10},    {0.05, 14}, {0.1, 15},   {0.25, 21},  {0.5, 30},
+                                                     {0.75, 52}, {0.9, 160}, {0.95, 364}, {0.99, 678}, {1, 1000}};
+  std::size_t i = 1;
+  while (at[i].first < share) ++i;
+  const double along = (share - at[i - 1].first) / (at[i].first - at[i - 1].first);
+  return std::lround(at[i - 1].second + along * (at[i].second - at[i - 1].second));
+}
+
+TEST(Ssgpdm, OfTwoThousandStatesIsASmallFileThatLoadsInASecond) {
+  Random random(1);
+  Ssgpdm saved, loaded;
+  Eigen::Index frames = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const std::string label = "a-b-" + std::to_string(i);
+    frames += occupancy((i + 0.5) / 2000);
+    saved.states.emplace(label, random_state(label, occupancy((i + 0.5) / 2000), random));
+  }
+  const test::TemporaryFolder folder;
+  const auto path = folder.file("ssgpdm.h5");
+  write_hdf5(path, [&](Archive& ar) { fields(ar, saved); });
+  const double start = cpu_seconds();
+  fields(*hdf5_reader(path), loaded);
+  const double seconds = cpu_seconds() - start,
+               megabytes = 1e-6 * static_cast<double>(std::filesystem::file_size(path));
+  RecordProperty("frames", static_cast<int>(frames));
+  RecordProperty("kilobytes", static_cast<int>(1e3 * megabytes));
+  RecordProperty("milliseconds", static_cast<int>(1e3 * seconds));
+  EXPECT_LT(megabytes, 60);
+  EXPECT_LT(seconds, 1);
+  ASSERT_EQ(loaded.states.size(), 2000u);
+  for (const auto& [label, state] : saved.states) {
+    const Sgpdm& same = loaded.states.at(label);
+    EXPECT_EQ(same.latents, state.latents);
+    EXPECT_EQ(same.visual.root, state.visual.root);
+    EXPECT_EQ(same.audio.basis, state.audio.basis);
+    EXPECT_EQ(same.dynamics.has_value(), state.dynamics.has_value());
+  }
 }
 
 TEST(Mapping, RegistersItsNodes) {
