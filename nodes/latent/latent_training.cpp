@@ -112,7 +112,8 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
   problem.fixed = options.fixed;
 
   Eigen::Index larger = 0;
-  const Kernel observation{{RbfTerm{1, 1}, BiasTerm{0.1}}};
+  Kernel observation{{RbfTerm{1, 1}, BiasTerm{0.1}}};
+  if (options.kernel == ObservationKernel::ard) observation.terms[0] = ArdTerm{1, Eigen::VectorXd::Ones(start.cols())};
   for (std::size_t i = 0; i < streams.size(); ++i) {
     larger = std::max(larger, frames[i].values.cols());
     problem.observations.push_back(

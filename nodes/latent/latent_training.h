@@ -32,6 +32,14 @@ inline constexpr EnumNames<CovarianceApproximation, 5> enum_names<CovarianceAppr
      {CovarianceApproximation::pitc, "pitc"},
      {CovarianceApproximation::variational, "variational"}}};
 
+enum class ObservationKernel {
+  rbf,  ///< one inverse width
+  ard   ///< one a latent dimension
+};
+template <>
+inline constexpr EnumNames<ObservationKernel, 2> enum_names<ObservationKernel>{
+    {{ObservationKernel::rbf, "rbf"}, {ObservationKernel::ard, "ard"}}};
+
 enum class LatentDynamics { none, absolute, difference };
 template <>
 inline constexpr EnumNames<LatentDynamics, 3> enum_names<LatentDynamics>{{{LatentDynamics::none, "none"},
@@ -60,12 +68,13 @@ inline constexpr EnumNames<OptimiserKind, 2> enum_names<OptimiserKind>{
 /// parameters, and the maximisation of Eqn 4.69 over latent points (or a
 /// back-constraint's parameters), inducing points and kernel parameters.
 ///
-/// Observation kernels are RBF + bias + white, that of the dynamics RBF + linear + white. A process of at most
+/// Observation kernels are RBF (or ARD) + bias + white, that of the dynamics RBF + linear + white. A process of at most
 /// `inducing` frames is exact whatever the approximation. The latent dimension is lowered to the smallest stream's and
 /// to N − 1 (at least 1). A dimension that does not vary keeps scale 1. Data that do not vary at all are not optimised:
 /// the model answers with their mean.
 struct LatentTraining {
   int latent_dimension = 3;
+  ObservationKernel kernel = ObservationKernel::rbf;
   CovarianceApproximation approximation = CovarianceApproximation::fitc;
   int inducing = 100;
   LatentDynamics dynamics = LatentDynamics::absolute;
@@ -125,6 +134,8 @@ void describe_training(Description<Node>& d) {
   param("latent_dimension", &LatentTraining::latent_dimension)
       .at_least(1)
       .doc("lowered to the smallest stream's dimension and to the number of frames less one");
+  param("kernel", &LatentTraining::kernel)
+      .doc("of the observed streams, beside bias and noise: RBF of one inverse width, or of one a latent dimension");
   param("approximation", &LatentTraining::approximation)
       .doc(
           "of covariances of more frames than inducing points; blocks of PITC have as many frames as there are "

@@ -59,6 +59,25 @@ void SgpdmObjective::lay_out() {
   }
 }
 
+std::string SgpdmObjective::name(Eigen::Index i) const {
+  const auto entry = [](Eigen::Index at, Eigen::Index rows) {
+    return " " + std::to_string(at % rows) + ", dimension " + std::to_string(at / rows);
+  };
+  if (i < latent_size_ && problem_.back_constraint) return "parameter " + std::to_string(i) + " of the back-constraint";
+  if (i < latent_size_) return "latent point" + entry(i, problem_.latents.rows());
+  for (const Place& place : places_) {
+    const std::string& stream = place.stream->name;
+    if (const Eigen::Index at = i - place.inducing; at >= 0 && at < place.stream->inducing.size())
+      return stream + " inducing point" + entry(at, place.stream->inducing.rows());
+    if (const Eigen::Index at = i - place.scale;
+        place.observed && place.observed->learn_scale && at >= 0 && at < place.observed->scale.size())
+      return stream + " log scale " + std::to_string(at);
+    if (const Eigen::Index at = i - place.kernel; at >= 0 && at < parameter_count(place.stream->kernel))
+      return "log " + stream + "." + parameter_names(place.stream->kernel)[static_cast<std::size_t>(at)];
+  }
+  return Objective::name(i);
+}
+
 void SgpdmObjective::fix() {
   free_.setOnes(start_.size());
   noise_.setOnes(start_.size());
@@ -85,11 +104,11 @@ void SgpdmObjective::fix() {
     }
     const bool absent_dynamics = !problem_.dynamics && name.starts_with("dynamics.");
     if (known || absent_dynamics) continue;
-    std::string streams;
-    for (const Place& place : places_) streams += (streams.empty() ? "" : ", ") + place.stream->name;
-    throw std::invalid_argument("\"" + name + "\" cannot be fixed: give latents, inducing, or one of " + streams +
-                                " followed by .rbf_variance, .inverse_width, .linear, .bias or .white that its "
-                                "kernel has");
+    std::string choices = "latents, inducing";
+    for (const Place& place : places_)
+      for (const auto& parameter : parameter_names(place.stream->kernel))
+        choices += ", " + place.stream->name + "." + parameter;
+    throw std::invalid_argument("\"" + name + "\" cannot be fixed: give some of " + choices);
   }
 }
 

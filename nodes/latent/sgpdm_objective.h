@@ -58,6 +58,7 @@ class SgpdmObjective : public Objective {
 
   Eigen::Index size() const override { return start_.size(); }
   bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) override;
+  std::string name(Eigen::Index parameter) const override;
 
   const Eigen::VectorXd& start() const { return start_; }
   /// Holds the white noise of every process where it is, or lets go of it.

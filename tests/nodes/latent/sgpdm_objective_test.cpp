@@ -15,11 +15,17 @@ using testing::gaussian;
 constexpr Eigen::Index frames = 7, latent = 2;
 const std::vector<std::int64_t> lengths = {3, 1, 3}, steps = {2, 2};
 
+enum class Kernels {
+  rbf,        // RBF and bias
+  ard,        // one width a dimension
+  one_stream  // ARD and linear, of one stream
+};
+
 struct Combination {
   CovarianceApproximation approximation = CovarianceApproximation::full;
   BackConstraintKind back_constraint = BackConstraintKind::none;
   LatentDynamics dynamics = LatentDynamics::absolute;
-  int streams = 2;
+  Kernels kernels = Kernels::rbf;
   bool learn_scale = true;
   bool first_is_noise = false;
 };
@@ -36,11 +42,16 @@ GpStream stream(const Combination& c, std::string name, Kernel kernel, const std
 
 SgpdmProblem problem(const Combination& c) {
   SgpdmProblem p;
-  const Kernel audio{{RbfTerm{1.2, 0.8}, BiasTerm{0.1}, WhiteTerm{0.2, 0.01}}};
-  const Kernel visual{{RbfTerm{0.9, 1.1}, BiasTerm{0.2}, WhiteTerm{0.1, 0.01}}};
+  Kernel audio{{RbfTerm{1.2, 0.8}, BiasTerm{0.1}, WhiteTerm{0.2, 0.01}}};
+  Kernel visual{{RbfTerm{0.9, 1.1}, BiasTerm{0.2}, WhiteTerm{0.1, 0.01}}};
+  if (c.kernels != Kernels::rbf) {
+    audio.terms[0] = ArdTerm{1.2, Eigen::Vector2d(0.6, 1.5)};
+    visual.terms[0] = ArdTerm{0.9, Eigen::Vector2d(2, 0.4)};
+  }
+  if (c.kernels == Kernels::one_stream) audio.terms.push_back(LinearTerm{0.3});
   p.observations.push_back(
       {stream(c, "audio", audio, lengths, 1, 4), gaussian(frames, 3, 1), Eigen::RowVector3d(0.5, 1, 2), c.learn_scale});
-  if (c.streams == 2)
+  if (c.kernels != Kernels::one_stream)
     p.observations.push_back({stream(c, "visual", visual, lengths, 1.5, 5), gaussian(frames, 2, 2),
                               Eigen::RowVector2d(0.7, 3), c.learn_scale});
   p.latents = gaussian(frames, latent, 3);
@@ -101,12 +112,12 @@ double textbook(const Combination& c, const SgpdmProblem& p) {
   return value + prior(first) + p.dynamics->weight * textbook(c, *p.dynamics, in, out, steps);
 }
 
-class SgpdmObjectives
-    : public ::testing::TestWithParam<std::tuple<CovarianceApproximation, BackConstraintKind, LatentDynamics, int>> {
+class SgpdmObjectives : public ::testing::TestWithParam<
+                            std::tuple<CovarianceApproximation, BackConstraintKind, LatentDynamics, Kernels>> {
  protected:
   Combination combination(bool learn_scale, bool first_is_noise) const {
-    const auto& [approximation, back_constraint, dynamics, streams] = GetParam();
-    return {approximation, back_constraint, dynamics, streams, learn_scale, first_is_noise};
+    const auto& [approximation, back_constraint, dynamics, kernels] = GetParam();
+    return {approximation, back_constraint, dynamics, kernels, learn_scale, first_is_noise};
   }
 };
 
@@ -118,9 +129,10 @@ std::string name_of(E value) {
 }
 
 std::string name_of_combination(const ::testing::TestParamInfo<SgpdmObjectives::ParamType>& info) {
-  const auto& [approximation, back_constraint, dynamics, streams] = info.param;
+  const auto& [approximation, back_constraint, dynamics, kernels] = info.param;
+  const char* const of_kernels[] = {"rbf", "ard", "one_stream"};
   return name_of(approximation) + "_" + name_of(back_constraint) + "_" + name_of(dynamics) + "_" +
-         std::to_string(streams);
+         of_kernels[static_cast<int>(kernels)];
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -130,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
                                          CovarianceApproximation::variational),
                        ::testing::Values(BackConstraintKind::none, BackConstraintKind::mlp, BackConstraintKind::kbr),
                        ::testing::Values(LatentDynamics::none, LatentDynamics::absolute, LatentDynamics::difference),
-                       ::testing::Values(1, 2)),
+                       ::testing::Values(Kernels::rbf, Kernels::ard, Kernels::one_stream)),
     name_of_combination);
 
 TEST_P(SgpdmObjectives, AreEquation469) {
@@ -149,9 +161,12 @@ TEST_P(SgpdmObjectives, HaveGradientsThatAgreeWithDifferences) {
     SgpdmProblem drawn = problem(combination(draw % 2, draw % 4 < 2));
     drawn.prior_deviation = draw % 3 ? 0 : 1.5;
     SgpdmObjective objective(std::move(drawn));
-    const auto check = check_gradient(objective, objective.start() + 0.3 * gaussian(objective.size(), 1, draw));
+    const Eigen::VectorXd at = objective.start() + 0.3 * gaussian(objective.size(), 1, draw);
+    auto check = check_gradient(objective, at);
+    // Inducing points that nearly coincide want smaller steps.
+    if (check.worst >= 1e-6) check = check_gradient(objective, at, 5e-5);
     EXPECT_TRUE(check.evaluated && check.cost_consistent);
-    EXPECT_LT(check.worst, 1e-6) << "draw " << draw << " at " << check.where;
+    EXPECT_LT(check.worst, 1e-6) << "draw " << draw << ": " << check.report();
     worst = std::max(worst, check.worst);
   }
   RecordProperty("worst", std::to_string(worst * 1e9) + "e-9");
@@ -175,6 +190,17 @@ TEST(SgpdmObjective, FixedParametersHaveNoDerivative) {
   SgpdmProblem bad = problem({});
   bad.fixed = {"audio.linear"};
   EXPECT_THROW(SgpdmObjective{std::move(bad)}, std::invalid_argument);
+}
+
+TEST(SgpdmObjective, NamesItsParameters) {
+  const SgpdmObjective objective(problem({.approximation = CovarianceApproximation::fitc}));
+  EXPECT_EQ(objective.name(0), "latent point 0, dimension 0");
+  EXPECT_EQ(objective.name(frames + 2), "latent point 2, dimension 1");
+  EXPECT_EQ(objective.name(2 * frames + 6 + 4), "visual inducing point 1, dimension 1");
+  EXPECT_EQ(objective.name(2 * frames + 18 + 3), "visual log scale 0");
+  EXPECT_EQ(objective.name(objective.size() - 1), "log dynamics.white");
+  EXPECT_EQ(SgpdmObjective(problem({.back_constraint = BackConstraintKind::mlp})).name(1),
+            "parameter 1 of the back-constraint");
 }
 
 TEST(SgpdmObjective, DoesNotLearnTheScaleOfAConstantDimension) {

@@ -75,6 +75,7 @@ TEST(TrainSgpdm, FitsWithEverySetting) {
   add("kbr").back_constraint = BackConstraintKind::kbr;
   add("learnt scale").learn_scale = true;
   add("noise first").first_point = FirstPoint::noise;
+  add("ard").kernel = ObservationKernel::ard;
   add("lbfgs").optimiser = OptimiserKind::lbfgs;
   add("held").hold_noise = 30;
   add("ppca").initial = LatentStart::ppca;
@@ -247,6 +248,22 @@ TEST(TrainSgpdm, RefusesWhatItCannotTrainOn) {
   }
 }
 
+TEST(TrainSgpdm, SaysWhatCanBeFixed) {
+  Context context;
+  TrainSgpdm train;
+  train.fixed = {"visual.white", "audio.linear"};
+  try {
+    train(wavy(2, 3), context);
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_STREQ(
+        e.what(),
+        "\"audio.linear\" cannot be fixed: give some of latents, inducing, audio.rbf_variance, "
+        "audio.inverse_width, audio.bias, audio.white, visual.rbf_variance, visual.inverse_width, visual.bias, "
+        "visual.white, dynamics.rbf_variance, dynamics.inverse_width, dynamics.linear, dynamics.white");
+  }
+}
+
 TEST(TrainSgpdm, StopsWhenCancelled) {
   std::atomic<bool> cancel = true;
   Context context;
@@ -301,7 +318,7 @@ TEST(SequenceObjective, IsTheConditionalOfTheJointDensity) {
     train.dynamics = form;
     train.approximation = CovarianceApproximation::full;
     const StateData data = wavy(4, 5);
-    const Sgpdm model = train(data, context);
+    Sgpdm model = train(data, context);
     Eigen::MatrixXd heard(20, 8);
     for (int w = 0; w < 4; ++w) heard.middleRows(5 * w, 5) = data.audio[static_cast<std::size_t>(w)];
     const Eigen::MatrixXd x = model.latents.middleRows(5, 4) + 0.1 * gaussian(4, 3, 1),
@@ -329,15 +346,19 @@ TEST(SequenceObjective, IsTheConditionalOfTheJointDensity) {
       out -= in;
       steps -= x.topRows(3);
     }
+    FullLikelihood full;
+    const Eigen::MatrixXd outputs = scaled(model.audio, heard), none(0, 3);
+    model.audio = full.posterior(model.audio.kernel, model.latents, none, outputs);
+    model.dynamics = full.posterior(model.dynamics->kernel, in, none, out);
     const double expected =
-        point_densities(model.audio, model.latents, scaled(model.audio, heard), x, audio) +
+        point_densities(model.audio, model.latents, outputs, x, audio) +
         model.dynamics_bias *
             (point_densities(*model.dynamics, in, out, x.topRows(3), steps) +
              testing::textbook_density(Eigen::MatrixXd::Constant(1, 1, model.first_variance), x.topRows(1)));
     SequenceObjective objective(model, audio, true);
     double cost = 0;
     ASSERT_TRUE(objective.evaluate(x.reshaped(), cost, nullptr));
-    EXPECT_NEAR(-cost, expected, 1e-3) << "weights and root are rounded";
+    EXPECT_NEAR(-cost, expected, 1e-9 * std::abs(expected) + 1e-9);
   }
 }
 
