@@ -49,6 +49,22 @@ void each_part(B& b, F f) {
   }
 }
 
+void write_parameters(const BackConstraint& b, VectorView parameters) {
+  Eigen::Index at = 0;
+  each_part(b, [&](const auto& part) {
+    parameters.segment(at, part.size()) = part.reshaped();
+    at += part.size();
+  });
+}
+
+void read_parameters(BackConstraint& b, const Eigen::Ref<const Eigen::VectorXd>& parameters) {
+  Eigen::Index at = 0;
+  each_part(b, [&](auto& part) {
+    part.reshaped() = parameters.segment(at, part.size());
+    at += part.size();
+  });
+}
+
 }  // namespace
 
 Eigen::MatrixXd latent_points(const BackConstraint& b, const ConstMatrix& y) {
@@ -92,30 +108,18 @@ Eigen::Index BackProjection::size() const {
 
 Eigen::VectorXd BackProjection::parameters() const {
   Eigen::VectorXd all(size());
-  Eigen::Index at = 0;
-  each_part(b_, [&](const auto& part) {
-    all.segment(at, part.size()) = part.reshaped();
-    at += part.size();
-  });
+  write_parameters(b_, all);
   return all;
 }
 
 BackConstraint BackProjection::with(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
   BackConstraint b = b_;
-  Eigen::Index at = 0;
-  each_part(b, [&](auto& part) {
-    part.reshaped() = parameters.segment(at, part.size());
-    at += part.size();
-  });
+  read_parameters(b, parameters);
   return b;
 }
 
 const Eigen::MatrixXd& BackProjection::compute(const Eigen::Ref<const Eigen::VectorXd>& parameters) {
-  Eigen::Index at = 0;
-  each_part(b_, [&](auto& part) {
-    part.reshaped() = parameters.segment(at, part.size());
-    at += part.size();
-  });
+  read_parameters(b_, parameters);
   if (std::holds_alternative<HiddenUnits>(b_.units)) features_ = features(b_, y_);
   x_.resize(y_.rows(), b_.weights.cols());
   x_.noalias() = features_ * b_.weights;
@@ -133,11 +137,7 @@ void BackProjection::gradient(const ConstMatrix& x_gradient, VectorView paramete
   } else {
     derivative.units = RbfUnits{};
   }
-  Eigen::Index at = 0;
-  each_part(derivative, [&](const auto& part) {
-    parameters.segment(at, part.size()) = part.reshaped();
-    at += part.size();
-  });
+  write_parameters(derivative, parameters);
 }
 
 }  // namespace talkgraph

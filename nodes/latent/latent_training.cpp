@@ -199,6 +199,7 @@ std::unique_ptr<Optimiser> optimiser_of(const LatentTraining& options) {
 /// Runs the optimiser, first with the noise held, from the start or a checkpoint; `state` receives the end.
 void maximise(const LatentTraining& options, int iterations, SgpdmObjective& objective, Checkpoint& checkpoint,
               Context& context) {
+  const auto started = std::chrono::steady_clock::now();
   const auto optimiser = optimiser_of(options);
   optimiser->on_iteration = [&](int i, double) {
     checkpoint.save_now_and_then();
@@ -217,6 +218,8 @@ void maximise(const LatentTraining& options, int iterations, SgpdmObjective& obj
     optimiser->minimise(objective, state);
     objective.hold_noise(false);
     checkpoint.noise_held = false;
+    if (state.report.reason == StopReason::time) return;
+    optimiser->seconds -= std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     state.restart();
   }
   optimiser->iterations = iterations;

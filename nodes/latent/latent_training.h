@@ -152,7 +152,7 @@ void describe_training(Description<Node>& d) {
       .doc("variance of the prior of each sequence's first latent point: first_variance, or the noise of the dynamics");
   param("first_variance", &LatentTraining::first_variance)
       .positive()
-      .doc("of the prior of first points; of all points where there are no dynamics");
+      .doc("of the prior of each sequence's first latent point");
   param("back_constraint", &LatentTraining::back_constraint)
       .doc("latent points as a function of the first stream: a perceptron, or kernel-based regression");
   param("hidden_units", &LatentTraining::hidden_units).at_least(1).doc("of the perceptron");

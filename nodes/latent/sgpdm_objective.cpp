@@ -17,7 +17,7 @@ void SgpdmObjective::find_steps() {
   Eigen::Index row = 0;
   for (const auto length : problem_.lengths)
     for (std::int64_t t = 0; t < length; ++t, ++row) {
-      if (t > 0 && problem_.dynamics) {
+      if (t > 0) {
         from_.push_back(row - 1);
         to_.push_back(row);
       } else {

@@ -48,8 +48,7 @@ struct SgpdmProblem {
 /// in their own units, as a function of latent points (or the back-constraint's
 /// parameters), inducing points, log scales that are learnt, and log kernel
 /// parameters, in that order; matrices column by column, the dynamics after all
-/// observed streams. Every frame without a predecessor has the first points'
-/// prior: without dynamics, each.
+/// observed streams.
 class SgpdmObjective : public Objective {
  public:
   /// Throws std::invalid_argument if `fixed` names what is not there.

@@ -99,17 +99,14 @@ double textbook(const Combination& c, const SgpdmProblem& p) {
              (textbook(c, o.process, x, scaled, lengths) - static_cast<double>(frames) * o.scale.array().log().sum());
   }
   const double first_variance = p.first_variance.value_or(p.dynamics ? testing::textbook_white(p.dynamics->kernel) : 1);
-  const auto prior = [&](const Eigen::MatrixXd& first) {
-    return p.dynamics_weight *
-           testing::textbook_density(first_variance * Eigen::MatrixXd::Identity(first.rows(), first.rows()), first);
-  };
-  if (!p.dynamics) return value + prior(x);
   Eigen::MatrixXd in(4, latent), out(4, latent), first(3, latent);
   in << x.middleRows(0, 2), x.middleRows(4, 2);
   out << x.middleRows(1, 2), x.middleRows(5, 2);
   first << x.row(0), x.row(3), x.row(4);
+  value += p.dynamics_weight * testing::textbook_density(first_variance * Eigen::MatrixXd::Identity(3, 3), first);
+  if (!p.dynamics) return value;
   if (p.form == DynamicsForm::difference) out -= in;
-  return value + prior(first) + p.dynamics->weight * textbook(c, *p.dynamics, in, out, steps);
+  return value + p.dynamics->weight * textbook(c, *p.dynamics, in, out, steps);
 }
 
 class SgpdmObjectives : public ::testing::TestWithParam<
