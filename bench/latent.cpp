@@ -155,7 +155,7 @@ void synthesis() {
     SequenceObjective objective(model, sound, true);
     Eigen::VectorXd x = model.latents.middleRows(7, 7).reshaped();
     ScaledConjugateGradients optimiser;
-    optimiser.iterations = 30;
+    optimiser.iterations = 15;  // as in synthesis
     optimiser.step_tolerance = optimiser.cost_tolerance = 1e-3;
     report = optimiser.minimise(objective, x);
   })};

@@ -7,9 +7,9 @@ double DtcLikelihood::noise(const Eigen::VectorXd& conditional, double white, Ei
   return 0;
 }
 
-double DtcLikelihood::noise_gradient(const Eigen::VectorXd&, double, double, Eigen::VectorXd& g) const {
-  const double by_white = g.sum();
-  g.setZero();
+double DtcLikelihood::noise_gradient(const Eigen::VectorXd&, double, double, Eigen::VectorXd& slope) const {
+  const double by_white = slope.sum();
+  slope.setZero();
   return by_white;
 }
 

@@ -7,8 +7,8 @@ double FitcLikelihood::noise(const Eigen::VectorXd& conditional, double white, E
   return 0;
 }
 
-double FitcLikelihood::noise_gradient(const Eigen::VectorXd&, double, double, Eigen::VectorXd& g) const {
-  return g.sum();
+double FitcLikelihood::noise_gradient(const Eigen::VectorXd&, double, double, Eigen::VectorXd& slope) const {
+  return slope.sum();
 }
 
 }  // namespace talkgraph

@@ -83,22 +83,24 @@ class LowRankLikelihood : public GpLikelihood {
   /// n frames, from `first`.
   struct Block {
     Eigen::Index first = 0, n = 0;
-    KernelMatrix cross;                    // K_fu
-    Eigen::MatrixXd v;                     // K_fu Lu⁻ᵀ
-    Eigen::MatrixXd whitened;              // R⁻¹ V
-    Eigen::MatrixXd outputs;               // R⁻¹ Y
-    Eigen::VectorXd conditional;           // diagonal of k(X, X) − Q
-    KernelMatrix own;                      // k(X, X), where Λ has more than a diagonal
-    Eigen::MatrixXd covariance, g;         // Λ, and the derivative by it, where it has more than a diagonal
-    Cholesky factor;                       // of that
-    Eigen::VectorXd lambda, inverse_root;  // the diagonal of a diagonal Λ, and that of its R⁻¹
+    KernelMatrix cross;       // K_fu
+    Eigen::MatrixXd v;        // K_fu Lu⁻ᵀ
+    Eigen::MatrixXd outputs;  // R⁻¹Y
+    // Where Λ is diagonal: the diagonals of k(X, X) − Q, Λ, R⁻¹ and the derivative by the first.
+    Eigen::VectorXd conditional, lambda, inverse_root, slope;
+    // Where Λ is more: k(X, X), Λ, its factor, R⁻¹V and the derivative by Λ.
+    KernelMatrix own;
+    Eigen::MatrixXd covariance, whitened, g;
+    Cholesky factor;
   };
 
   /// Lengths of the blocks that N frames are taken in.
   virtual const std::vector<Eigen::Index>& lengths(Eigen::Index n) = 0;
-  /// Computes Λ of a block and brings `whitened` (V) and `outputs` (Y) to R⁻¹V and R⁻¹Y; returns −½ D ln|Λ| and
-  /// whatever else the type adds to ln p.
+  /// Computes Λ of a block and brings its outputs, Y, to R⁻¹Y; returns −½ D ln|Λ| and whatever else the type adds to ln
+  /// p.
   virtual double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) = 0;
+  /// R⁻¹V.
+  virtual void whiten(const Block& block, MatrixView whitened) const = 0;
   /// Adds R⁻ᵀ M to `sum`, using M up.
   virtual void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const = 0;
   /// From α = K⁻¹Y and S = R⁻¹V La⁻ᵀ, which give the derivative by Λ, ½(ααᵀ − D R⁻ᵀ(I − SSᵀ)R⁻¹), adds to those by the
@@ -116,7 +118,7 @@ class LowRankLikelihood : public GpLikelihood {
   Cholesky lu_, la_;
   Eigen::MatrixXd a_, c_, b_;  // A, La⁻¹ Σ (R⁻¹V)ᵀ R⁻¹Y, La⁻ᵀ c
   Eigen::MatrixXd lu_inverse_, la_inverse_, scaled_la_inverse_, e_;
-  Eigen::MatrixXd residual_, alpha_, v_gradient_;  // of one block
+  Eigen::MatrixXd whitened_, residual_, alpha_, v_gradient_;  // of one block
   Eigen::MatrixXd uu_gradient_;
 };
 
@@ -126,40 +128,40 @@ class DiagonalLikelihood : public LowRankLikelihood {
  protected:
   /// Λ from c and the variance of the noise; returns what is added to ln p for each output dimension.
   virtual double noise(const Eigen::VectorXd& conditional, double white, Eigen::VectorXd& lambda) const = 0;
-  /// From the derivative by Λ that by c, in its place; returns that by the variance of the noise.
+  /// From the derivative by Λ that by c, in its place: `slope`; returns that by the variance of the noise.
   virtual double noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
-                                Eigen::VectorXd& g) const = 0;
+                                Eigen::VectorXd& slope) const = 0;
 
  private:
   const std::vector<Eigen::Index>& lengths(Eigen::Index n) final;
   double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) final;
   void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const final;
+  void whiten(const Block& block, MatrixView whitened) const final;
   bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
                      const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) final;
 
   std::vector<Eigen::Index> lengths_;
-  Eigen::VectorXd diagonal_, g_;
 };
 
 /// Deterministic training conditional (Seeger, Williams and Lawrence 2003): Λ = white·I.
 class DtcLikelihood : public DiagonalLikelihood {
   double noise(const Eigen::VectorXd& conditional, double white, Eigen::VectorXd& lambda) const override;
   double noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
-                        Eigen::VectorXd& g) const override;
+                        Eigen::VectorXd& slope) const override;
 };
 
 /// Fully independent training conditional (Snelson and Ghahramani 2006): Λ = diag(k(X, X) − Q) + white·I.
 class FitcLikelihood : public DiagonalLikelihood {
   double noise(const Eigen::VectorXd& conditional, double white, Eigen::VectorXd& lambda) const override;
   double noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
-                        Eigen::VectorXd& g) const override;
+                        Eigen::VectorXd& slope) const override;
 };
 
 /// The lower bound of Titsias (2009): that of DTC less D/(2·white) · tr(k(X, X) − Q). Not above the full density.
 class VariationalLikelihood : public DiagonalLikelihood {
   double noise(const Eigen::VectorXd& conditional, double white, Eigen::VectorXd& lambda) const override;
   double noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
-                        Eigen::VectorXd& g) const override;
+                        Eigen::VectorXd& slope) const override;
 };
 
 /// Partially independent training conditional (Quiñonero-Candela and Rasmussen 2005):
@@ -173,6 +175,7 @@ class PitcLikelihood : public LowRankLikelihood {
   const std::vector<Eigen::Index>& lengths(Eigen::Index n) override;
   double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) override;
   void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const override;
+  void whiten(const Block& block, MatrixView whitened) const override;
   bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
                      const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) override;
 

@@ -31,6 +31,7 @@ void LowRankLikelihood::divide(Eigen::Index n) {
     first += sizes[i];
     most = std::max(most, sizes[i]);
   }
+  whitened_.resize(most, a_.cols());
   residual_.resize(most, c_.cols());
   alpha_.resize(most, c_.cols());
   v_gradient_.resize(most, a_.cols());
@@ -58,8 +59,10 @@ double LowRankLikelihood::factorise(const Kernel& kernel, const ConstMatrix& x, 
     solve_transposed_right(lu_.factor(), block.v);
     block.outputs = y.middleRows(block.first, block.n);
     value += condition(kernel, inputs, block);
-    a_.selfadjointView<Eigen::Lower>().rankUpdate(block.whitened.transpose());
-    c_.noalias() += block.whitened.transpose() * block.outputs;
+    MatrixView whitened = whitened_.topRows(block.n);
+    whiten(block, whitened);
+    a_.selfadjointView<Eigen::Lower>().rankUpdate(whitened.transpose());
+    c_.noalias() += whitened.transpose() * block.outputs;
   }
   a_.triangularView<Eigen::StrictlyUpper>() = a_.transpose();
   la_.compute(a_, 0, "the inner matrix I + VᵀΛ⁻¹V");
@@ -102,19 +105,20 @@ void LowRankLikelihood::add_gradient(const Kernel& kernel, const ConstMatrix& x,
     const auto inputs = x.middleRows(block.first, block.n);
     MatrixView x_gradient = gradient.inputs.middleRows(block.first, block.n);
     MatrixView residual = residual_.topRows(block.n), alpha = alpha_.topRows(block.n);
-    MatrixView v_gradient = v_gradient_.topRows(block.n);
-    multiply_transposed_right(la_inverse_, block.whitened);
+    MatrixView v_gradient = v_gradient_.topRows(block.n), s = whitened_.topRows(block.n);
+    whiten(block, s);
+    multiply_transposed_right(la_inverse_, s);
     residual = block.outputs;
-    residual.noalias() -= block.whitened * c_;
+    residual.noalias() -= s * c_;
     alpha.setZero();
     add_unwhitened(block, residual, alpha);
     gradient.outputs.middleRows(block.first, block.n) = -alpha;
-    if (differentiate(kernel, inputs, block, alpha, block.whitened, v_gradient, x_gradient, gradient.kernel))
+    if (differentiate(kernel, inputs, block, alpha, s, v_gradient, x_gradient, gradient.kernel))
       add_symmetric(v_gradient, block.v, e_);
     else
       v_gradient.setZero();
-    multiply_right(scaled_la_inverse_, block.whitened);
-    add_unwhitened(block, block.whitened, v_gradient);
+    multiply_right(scaled_la_inverse_, s);
+    add_unwhitened(block, s, v_gradient);
     v_gradient.noalias() += alpha * b_.transpose();
     multiply_right(lu_inverse_, v_gradient);
     block.cross.gradient(kernel, inputs, u, v_gradient, x_gradient, gradient.inducing, gradient.kernel);

@@ -31,6 +31,8 @@ double PitcLikelihood::condition(const Kernel& kernel, const ConstMatrix& x, Blo
   return -0.5 * static_cast<double>(block.outputs.cols()) * block.factor.log_determinant();
 }
 
+void PitcLikelihood::whiten(const Block& block, MatrixView whitened) const { whitened = block.whitened; }
+
 void PitcLikelihood::add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const {
   block.factor.factor().triangularView<Eigen::Lower>().transpose().solveInPlace(m);
   sum += m;

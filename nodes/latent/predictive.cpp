@@ -6,23 +6,22 @@
 namespace talkgraph {
 
 void Predictive::compute(const GaussianProcess& gp, const ConstMatrix& x) {
-  const Eigen::MatrixXd& k = kernel_.compute(gp.kernel, x, gp.basis);
+  const Eigen::MatrixXd& k = kernel_.compute(gp.kernel, gp.basis, x);
   mean_.resize(x.rows(), gp.weights.cols());
-  mean_.noalias() = k * gp.weights;
+  mean_.noalias() = k.transpose() * gp.weights;
   variance_.resize(x.rows());
   diagonal(gp.kernel, x, variance_);
   if (gp.root.size() > 0) {
-    rooted_.resize(x.rows(), gp.root.cols());
-    rooted_.noalias() = k * gp.root;
-    variance_ -= rooted_.rowwise().squaredNorm();
+    rooted_.resize(gp.root.cols(), x.rows());
+    rooted_.noalias() = gp.root.transpose() * k;
+    variance_ -= rooted_.colwise().squaredNorm().transpose();
   } else {
-    reduced_.resize(x.rows(), gp.basis.rows());
-    reduced_.noalias() = k * gp.reduction;
-    variance_ -= reduced_.cwiseProduct(k).rowwise().sum();
+    reduced_.resize(gp.basis.rows(), x.rows());
+    reduced_.noalias() = gp.reduction * k;
+    variance_ -= reduced_.cwiseProduct(k).colwise().sum().transpose();
   }
-  const double noise = white_variance(gp.kernel);
   variance_ = variance_.cwiseMax(0);
-  variance_.array() += noise;
+  variance_.array() += white_variance(gp.kernel);
 }
 
 double Predictive::log_density(const ConstMatrix& y) {
@@ -43,16 +42,15 @@ void Predictive::gradient(const GaussianProcess& gp, const ConstMatrix& x, doubl
   residual_.array().colwise() *= weight / variance_.array();
   y_gradient -= residual_;
   if (gp.root.size() > 0) {
-    reduced_.resize(x.rows(), gp.basis.rows());
-    reduced_.noalias() = rooted_ * gp.root.transpose();
+    reduced_.resize(gp.basis.rows(), x.rows());
+    reduced_.noalias() = gp.root * rooted_;
   }
-  g_.resize(x.rows(), gp.basis.rows());
-  g_.noalias() = residual_ * gp.weights.transpose();
-  for (Eigen::Index j = 0; j < g_.cols(); ++j)
-    g_.col(j).array() -= 2 * variance_gradient_.array() * reduced_.col(j).array();
+  g_.resize(gp.basis.rows(), x.rows());
+  g_.noalias() = gp.weights * residual_.transpose();
+  g_ -= reduced_ * (2 * variance_gradient_).asDiagonal();
   basis_gradient_.setZero(gp.basis.rows(), gp.basis.cols());
   logs_.setZero(parameter_count(gp.kernel));
-  kernel_.gradient(gp.kernel, x, gp.basis, g_, x_gradient, basis_gradient_, logs_);
+  kernel_.gradient(gp.kernel, gp.basis, x, g_, basis_gradient_, x_gradient, logs_);
   diagonal_gradient(gp.kernel, x, variance_gradient_, x_gradient, logs_);
 }
 

@@ -8,9 +8,9 @@ double VariationalLikelihood::noise(const Eigen::VectorXd& conditional, double w
 }
 
 double VariationalLikelihood::noise_gradient(const Eigen::VectorXd& conditional, double white, double outputs,
-                                             Eigen::VectorXd& g) const {
-  const double by_white = g.sum() + 0.5 * outputs * conditional.sum() / (white * white);
-  g.setConstant(-0.5 * outputs / white);
+                                             Eigen::VectorXd& slope) const {
+  const double by_white = slope.sum() + 0.5 * outputs * conditional.sum() / (white * white);
+  slope.setConstant(-0.5 * outputs / white);
   return by_white;
 }
 

@@ -76,11 +76,13 @@ StackedTraining stack_training(const Collected<Track>& audio, const Collected<Tr
   Eigen::Index at = 0;
   for (const auto& p : pairs) {
     const Eigen::MatrixXd audio_rows = stacked(out.inputs, *p.audio);
+    const Eigen::Index first = at;
     for (Eigen::Index t = 0; t < p.frames; ++t) {
       if (p.visual->is_lost(t)) continue;
       out.audio.row(at) = audio_rows.row(t);
       out.visual.row(at++) = p.visual->values.row(t);
     }
+    if (at > first) out.lengths.push_back(at - first);
   }
   out.audio.conservativeResize(at, Eigen::NoChange);
   out.visual.conservativeResize(at, Eigen::NoChange);

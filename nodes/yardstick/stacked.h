@@ -12,8 +12,9 @@ Eigen::MatrixXd stacked(const StackedInputs& inputs, const Track& audio);
 /// What plain regression trains on.
 struct StackedTraining {
   StackedInputs inputs;
-  Eigen::MatrixXd audio;   ///< N × stacked, z-scored
-  Eigen::MatrixXd visual;  ///< N × D
+  Eigen::MatrixXd audio;              ///< N × stacked, z-scored
+  Eigen::MatrixXd visual;             ///< N × D
+  std::vector<std::int64_t> lengths;  ///< of the sequences, which sum to N
 };
 
 /// Pairs audio and visual tracks by key. Throws std::runtime_error if none pair,

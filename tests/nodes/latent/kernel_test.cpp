@@ -2,16 +2,24 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
+#include "graph/archive.h"
 #include "nodes/latent/cholesky.h"
 #include "nodes/latent/objective.h"
+#include "nodes/latent/rbf_loops.h"
+#include "nodes/latent/triangular.h"
 #include "tests/nodes/latent/textbook.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
 
 using testing::gaussian;
 
-const Kernel everything{{RbfTerm{1.3, 0.7}, LinearTerm{0.4}, BiasTerm{0.2}, WhiteTerm{0.3, 0.1}, RbfTerm{0.5, 4}}};
+const Kernel everything{{RbfTerm{1.3, 0.7}, LinearTerm{0.4}, ArdTerm{0.8, Eigen::Vector3d(0.5, 1.5, 3)}, BiasTerm{0.2},
+                         WhiteTerm{0.3, 0.1}, RbfTerm{0.5, 4}}};
 
 TEST(Kernel, MatrixAndDiagonalFollowTheFormulas) {
   const auto a = gaussian(5, 3, 1), b = gaussian(4, 3, 2);
@@ -26,29 +34,111 @@ TEST(Kernel, MatrixAndDiagonalFollowTheFormulas) {
 TEST(Kernel, LogParametersComeBack) {
   Kernel copy = everything;
   const Eigen::VectorXd logs = log_parameters(everything);
-  ASSERT_EQ(logs.size(), 7);
-  EXPECT_EQ(parameter_names(everything)[1], "inverse_width");
+  ASSERT_EQ(logs.size(), 11);
+  EXPECT_EQ(parameter_names(everything),
+            (std::vector<std::string>{"rbf_variance", "inverse_width", "linear", "ard_variance", "inverse_width_1",
+                                      "inverse_width_2", "inverse_width_3", "bias", "white", "rbf_variance",
+                                      "inverse_width"}));
   set_log_parameters(copy, logs);
   EXPECT_NEAR(white_variance(copy), 0.3, 1e-15);
   EXPECT_TRUE(log_parameters(copy).isApprox(logs, 1e-14));
+}
+
+TEST(Kernel, IsTheSameAfterSavingAndLoading) {
+  const test::TemporaryFolder folder;
+  Kernel saved = everything, loaded;
+  write_hdf5(folder.file("kernel.h5"), [&](Archive& ar) { fields(ar, saved); });
+  fields(*hdf5_reader(folder.file("kernel.h5")), loaded);
+  ASSERT_EQ(loaded.terms.size(), everything.terms.size());
+  const auto a = gaussian(4, 3, 1), b = gaussian(3, 3, 2);
+  EXPECT_EQ(KernelMatrix().compute(loaded, a, b), KernelMatrix().compute(everything, a, b));
+  EXPECT_EQ(white_variance(loaded), 0.3);
+  EXPECT_EQ(log_parameters(loaded), log_parameters(everything));
+}
+
+TEST(Kernel, RefusesWidthsOfOtherDimensions) {
+  EXPECT_THROW(KernelMatrix().compute(everything, gaussian(4, 2, 1), gaussian(3, 2, 2)), std::invalid_argument);
+}
+
+TEST(Kernel, IsAsAccurateFarFromTheOrigin) {
+  const Kernel kernel{{RbfTerm{1, 1}}};
+  Eigen::MatrixXd a(2, 1), b(1, 1);
+  a << 1e8, 1e8 + 1;
+  b << 1e8;
+  const Eigen::MatrixXd k = KernelMatrix().compute(kernel, a, b);
+  EXPECT_EQ(k(0, 0), 1);
+  EXPECT_NEAR(k(1, 0), std::exp(-0.5), 1e-15);
+}
+
+TEST(RbfLoops, ExponentialIsWithinTwoUnitsOfTheLastPlace) {
+  constexpr Eigen::Index n = 20011;
+  const Eigen::VectorXd a = Eigen::VectorXd::LinSpaced(n, 0, std::sqrt(708.0));
+  Eigen::VectorXd values(n), sums = Eigen::VectorXd::Ones(n);
+  const double width = 2, origin = 0;
+  rbf::values(1, &width, 1, a.data(), n, n, &origin, values.data(), sums.data());
+  double worst = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const long double exact = std::exp(-static_cast<long double>(a[i] * a[i]));
+    const double unit = std::nextafter(values[i], 1) - values[i];
+    worst = std::max(worst, static_cast<double>(std::abs(values[i] - exact)) / std::max(unit, 1e-320));
+    EXPECT_EQ(sums[i], 1 + values[i]);
+  }
+  EXPECT_LE(worst, 2);
+}
+
+TEST(RbfLoops, DoesNotHangOnPlaceInAVectorAndPassesNotANumberOn) {
+  const Eigen::VectorXd a = gaussian(37, 1, 1);
+  const double width = 0.7, origin = 0.3;
+  Eigen::VectorXd all(37), sums(37);
+  rbf::values(1.5, &width, 1, a.data(), 37, 37, &origin, all.data(), sums.data());
+  for (Eigen::Index i = 0; i < 37; ++i) {
+    double one = 0, sum = 0;
+    rbf::values(1.5, &width, 1, a.data() + i, 37, 1, &origin, &one, &sum);
+    EXPECT_EQ(one, all[i]);
+  }
+  const Eigen::Vector3d odd(std::nan(""), 1e200, 1e3);
+  Eigen::Vector3d values, ignored;
+  rbf::values(1, &width, 1, odd.data(), 3, 3, &origin, values.data(), ignored.data());
+  EXPECT_TRUE(std::isnan(values[0]));
+  EXPECT_EQ(values[1], 0);
+  EXPECT_EQ(values[2], 0);
+}
+
+TEST(Triangular, SolvesMultipliesAndInverts) {
+  for (const Eigen::Index n : {1, 7, 33, 100}) {
+    Eigen::MatrixXd l = gaussian(n, n, 1).triangularView<Eigen::Lower>();
+    l.diagonal().array() = 2 + l.diagonal().array().abs();
+    l.triangularView<Eigen::StrictlyLower>() = l / std::sqrt(n);
+    const auto b = gaussian(12, n, 2);
+    Eigen::MatrixXd x = b, inverse;
+    solve_transposed_right(l, x);
+    EXPECT_TRUE((x * l.transpose()).isApprox(b, 1e-12));
+    multiply_transposed_right(l, x);
+    EXPECT_TRUE(x.isApprox(b, 1e-12));
+    multiply_right(l, x);
+    EXPECT_TRUE(x.isApprox(b * l, 1e-12));
+    invert_lower(l, inverse);
+    EXPECT_TRUE((inverse * l).isIdentity(1e-12));
+    EXPECT_TRUE(inverse.isLowerTriangular(0));
+  }
 }
 
 /// Σ W∘k(A, B) + v·diag k(A, A) + white² as a function of A, B and the log parameters.
 class Probe : public Objective {
  public:
   Probe() : weights_(gaussian(5, 4, 3)), diagonal_weights_(gaussian(5, 1, 4)) {}
-  Eigen::Index size() const override { return 15 + 12 + 7; }
+  Eigen::Index size() const override { return 15 + 12 + 11; }
   bool evaluate(const Eigen::VectorXd& p, double& cost, Eigen::VectorXd* gradient) override {
     const Eigen::MatrixXd a = p.head(15).reshaped(5, 3), b = p.segment(15, 12).reshaped(4, 3);
     Kernel kernel = everything;
-    set_log_parameters(kernel, p.tail(7));
+    set_log_parameters(kernel, p.tail(11));
     Eigen::VectorXd d(5);
     diagonal(kernel, a, d);
     const double white = white_variance(kernel);
     cost = matrix_.compute(kernel, a, b).cwiseProduct(weights_).sum() + d.dot(diagonal_weights_) + white * white;
     if (!gradient) return true;
     Eigen::MatrixXd ga = Eigen::MatrixXd::Zero(5, 3), gb = Eigen::MatrixXd::Zero(4, 3);
-    Eigen::VectorXd logs = Eigen::VectorXd::Zero(7);
+    Eigen::VectorXd logs = Eigen::VectorXd::Zero(11);
     matrix_.gradient(kernel, a, b, weights_, ga, gb, logs);
     diagonal_gradient(kernel, a, diagonal_weights_, ga, logs);
     white_gradient(kernel, 2 * white, logs);
@@ -68,7 +158,7 @@ TEST(Kernel, GradientsAgreeWithDifferences) {
     Probe probe;
     const auto check = check_gradient(probe, gaussian(probe.size(), 1, 10 + seed));
     EXPECT_TRUE(check.cost_consistent);
-    EXPECT_LT(check.worst, 1e-8) << "parameter " << check.where;
+    EXPECT_LT(check.worst, 1e-8) << check.report();
   }
 }
 
@@ -86,6 +176,11 @@ TEST(GradientCheck, FindsAWrongDerivativeAndACostThatDependsOnAsking) {
   EXPECT_FALSE(check.cost_consistent);
   EXPECT_EQ(check.where, 1);
   EXPECT_NEAR(check.worst, 0.05, 1e-6);
+  const std::string report = check.report(1);
+  EXPECT_NE(report.find("largest difference 0.05 at parameter 1; the cost depends"), std::string::npos) << report;
+  EXPECT_NE(report.find("analytic             6.3  numeric               6  difference 0.3"), std::string::npos)
+      << report;
+  EXPECT_EQ(report.find("parameter 0 "), std::string::npos) << report;
 }
 
 TEST(Cholesky, AddsJitterToASingularMatrixAndSaysSo) {
@@ -98,15 +193,30 @@ TEST(Cholesky, AddsJitterToASingularMatrixAndSaysSo) {
   EXPECT_LE(c.jitter(), 1e-8);
 }
 
-TEST(Cholesky, NamesTheMatrixThatCannotBeFactorised) {
+TEST(Cholesky, DoesNotTrustAPivotOfRoundingErrors) {
+  Eigen::Matrix2d nearly;
+  nearly << 1, 1, 1, 1 + 2e-16;
   Cholesky c;
+  c.compute(nearly, 0, "nearly singular");
+  EXPECT_EQ(c.jitter(), 1e-10);
+}
+
+std::string refusal(const Eigen::MatrixXd& matrix) {
   try {
-    c.compute(-Eigen::MatrixXd::Identity(3, 3), 0, "the covariance of nothing");
-    FAIL();
+    Cholesky().compute(matrix, 0, "the covariance of nothing");
   } catch (const FactorisationError& e) {
-    EXPECT_NE(std::string(e.what()).find("the covariance of nothing (3 × 3"), std::string::npos);
+    return e.what();
   }
-  EXPECT_THROW(c.compute(Eigen::MatrixXd::Constant(2, 2, NAN), 0, "nan"), FactorisationError);
+  return "";
+}
+
+TEST(Cholesky, SaysWhatCannotBeFactorisedAndWhatToTry) {
+  const std::string indefinite = refusal(Eigen::Vector3d(1000, -1000, 1).asDiagonal());
+  for (const auto* part : {"the covariance of nothing (3 × 3)", "condition about 1e+03", "minimum_noise"})
+    EXPECT_NE(indefinite.find(part), std::string::npos) << indefinite;
+  Eigen::MatrixXd nan = Eigen::MatrixXd::Identity(2, 2);
+  nan(1, 0) = std::nan("");
+  EXPECT_NE(refusal(nan).find("entry (1, 0) is nan"), std::string::npos) << refusal(nan);
 }
 
 }  // namespace

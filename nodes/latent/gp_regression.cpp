@@ -1,0 +1,141 @@
+#include "nodes/latent/gp_regression.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "nodes/latent/gp_objective.h"
+#include "nodes/latent/lbfgs.h"
+#include "nodes/latent/predictive.h"
+#include "nodes/latent/scg.h"
+#include "nodes/yardstick/stacked.h"
+
+namespace talkgraph {
+
+namespace {
+
+/// Standard deviations of centred columns; 1 where only rounding varies.
+Eigen::RowVectorXd deviations(const Eigen::MatrixXd& centred, const Eigen::RowVectorXd& mean) {
+  const Eigen::RowVectorXd deviation = centred.colwise().stableNorm() / std::sqrt(static_cast<double>(centred.rows()));
+  return (deviation.array() > 1e-10 * mean.array().abs()).select(deviation, 1.0);
+}
+
+/// Rows at even distances.
+Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count) {
+  const Eigen::ArrayXi rows = Eigen::ArrayXi::NullaryExpr(count, [&](Eigen::Index i) { return i * x.rows() / count; });
+  return x(rows, Eigen::all);
+}
+
+std::unique_ptr<Optimiser> optimiser_of(OptimiserKind kind) {
+  if (kind == OptimiserKind::lbfgs) return std::make_unique<Lbfgs>();
+  return std::make_unique<ScaledConjugateGradients>();
+}
+
+}  // namespace
+
+void parameters(Parameters<KernelChoice>& p) {
+  p.param("kind", &KernelChoice::kind).required().doc("rbf, ard (rbf with a width a dimension), linear, bias, white");
+  p.param("variance", &KernelChoice::variance).positive().doc("to start from");
+  p.param("inverse_width", &KernelChoice::inverse_width).positive().doc("of rbf and ard, to start from");
+  p.param("minimum", &KernelChoice::minimum).at_least(0).doc("of white: its variance stays above this");
+}
+
+Kernel kernel_of(const std::vector<KernelChoice>& terms, Eigen::Index d) {
+  Kernel kernel;
+  for (const KernelChoice& t : terms) switch (t.kind) {
+      case KernelKind::rbf:
+        kernel.terms.push_back(RbfTerm{t.variance, t.inverse_width});
+        break;
+      case KernelKind::ard:
+        kernel.terms.push_back(ArdTerm{t.variance, Eigen::VectorXd::Constant(d, t.inverse_width)});
+        break;
+      case KernelKind::linear:
+        kernel.terms.push_back(LinearTerm{t.variance});
+        break;
+      case KernelKind::bias:
+        kernel.terms.push_back(BiasTerm{t.variance});
+        break;
+      case KernelKind::white:
+        kernel.terms.push_back(WhiteTerm{std::max(t.variance, 2 * t.minimum), t.minimum});
+        break;
+    }
+  return kernel;
+}
+
+GpRegression TrainGp::operator()(const Collected<Track>& audio, const Collected<Track>& visual,
+                                 Context& context) const {
+  if (kernel.empty()) throw std::runtime_error("a kernel of no terms: give at least one, and white for the noise");
+  const StackedTraining training = stack_training(audio, visual, this->context);
+  const double shrink = 1 / std::sqrt(static_cast<double>(training.audio.cols()));
+  const Eigen::MatrixXd x = training.audio * shrink;
+  const Eigen::RowVectorXd mean = training.visual.colwise().mean();
+  Eigen::MatrixXd y = training.visual.rowwise() - mean;
+  const Eigen::RowVectorXd scale = deviations(y, mean);
+  y.array().rowwise() /= scale.array();
+
+  const bool sparse = approximation != CovarianceApproximation::full && x.rows() > inducing;
+  const auto likelihood = make_likelihood(sparse ? approximation : CovarianceApproximation::full, training.lengths,
+                                          static_cast<Eigen::Index>(inducing));
+  GpObjective objective(*likelihood, kernel_of(kernel, x.cols()), x, spread(x, sparse ? inducing : 0), fix_inducing, y);
+  Eigen::VectorXd parameters = objective.start();
+  const auto minimiser = optimiser_of(optimiser);
+  minimiser->iterations = iterations;
+  minimiser->on_iteration = [&](int i, double) {
+    context.check_cancelled();
+    context.progress(static_cast<double>(i) / iterations);
+  };
+  const OptimiserReport report = minimiser->minimise(objective, parameters);
+
+  GpRegression model;
+  model.inputs = training.inputs;
+  model.inputs.scale *= shrink;
+  model.process = objective.posterior(parameters);
+  model.process.mean = mean;
+  model.process.scale = scale;
+  model.log_likelihood = -report.cost - static_cast<double>(x.rows()) * scale.array().log().sum();
+  model.iterations = report.iterations;
+  model.jitter = likelihood->jitter();
+  context.log(fmt::format("{} frames of {} inputs, ln p = {:.1f} after {} iterations ({}){}", x.rows(), x.cols(),
+                          model.log_likelihood, report.iterations, str(report.reason),
+                          model.jitter > 0 ? fmt::format(", jitter {:.1g}", model.jitter) : ""));
+  return model;
+}
+
+PredictGp::Prediction PredictGp::operator()(const GpRegression& model, const Track& audio) const {
+  Predictive predictive;
+  predictive.compute(model.process, stacked(model.inputs, audio));
+  Prediction p;
+  p.track.rate = p.deviation.rate = audio.rate;
+  p.track.start = p.deviation.start = audio.start;
+  p.track.values = unscaled(model.process, predictive.mean());
+  p.deviation.values = predictive.variance().cwiseSqrt() * model.process.scale;
+  return p;
+}
+
+void describe(Description<TrainGp>& d) {
+  d.type("latent.gp").summary("learns Gaussian process regression from sound to visual parameters").stored();
+  d.source("Thesis §4.2.5, Eqns 4.20-4.33");
+  d.input("audio", "speech features at the video rate of the training sequences")
+      .input("visual", "visual parameters of the training sequences")
+      .output("model", "a process of visual parameters");
+  d.param("context", &TrainGp::context).within(0, 50).unit("frames").doc("neighbours on each side");
+  d.param("kernel", &TrainGp::kernel).doc("terms of a sum; white is the noise");
+  d.param("approximation", &TrainGp::approximation)
+      .doc(
+          "of the covariance of more frames than inducing points; blocks of pitc have as many frames as there are "
+          "inducing points, at most");
+  d.param("inducing", &TrainGp::inducing).at_least(1).doc("inducing points");
+  d.param("fix_inducing", &TrainGp::fix_inducing).doc("inducing points stay the frames they start from");
+  d.param("optimiser", &TrainGp::optimiser).doc("scaled conjugate gradients, or L-BFGS");
+  d.param("iterations", &TrainGp::iterations).at_least(0).doc("limit of the optimiser");
+}
+
+void describe(Description<PredictGp>& d) {
+  d.type("latent.gp_predict").summary("predicts visual parameters and their deviation by a Gaussian process");
+  d.source("Thesis §4.2.5, Eqns 4.30, 4.31; the variance includes the noise");
+  d.input("model", "of latent.gp").input("audio", "speech features at the video rate");
+  d.output("track", &PredictGp::Prediction::track, "visual parameters")
+      .output("deviation", &PredictGp::Prediction::deviation, "standard deviation of each");
+}
+
+}  // namespace talkgraph
