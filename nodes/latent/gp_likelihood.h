@@ -103,10 +103,12 @@ class LowRankLikelihood : public GpLikelihood {
   virtual void whiten(const Block& block, MatrixView whitened) const = 0;
   /// Adds R⁻ᵀ M to `sum`, using M up.
   virtual void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const = 0;
-  /// From α = K⁻¹Y and S = R⁻¹V La⁻ᵀ, which give the derivative by Λ, ½(ααᵀ − D R⁻ᵀ(I − SSᵀ)R⁻¹), adds to those by the
-  /// block's inputs and the kernel's parameters. Where Λ depends on V, sets what V gets from it and returns true.
+  /// From α = K⁻¹Y, W = R⁻¹V and P = −D W A⁻¹, which give the derivative by Λ, ½(ααᵀ − R⁻ᵀ(D I + P Wᵀ)R⁻¹), adds to
+  /// those by the block's inputs and the kernel's parameters. Where Λ depends on V, sets what V gets from it and
+  /// returns true.
   virtual bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
-                             const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) = 0;
+                             const ConstMatrix& w, const ConstMatrix& p, MatrixView v_gradient, MatrixView x_gradient,
+                             VectorView logs) = 0;
 
  private:
   void divide(Eigen::Index n);
@@ -116,9 +118,9 @@ class LowRankLikelihood : public GpLikelihood {
   std::vector<Block> blocks_;
   KernelMatrix kuu_;
   Cholesky lu_, la_;
-  Eigen::MatrixXd a_, c_, b_;  // A, La⁻¹ Σ (R⁻¹V)ᵀ R⁻¹Y, La⁻ᵀ c
-  Eigen::MatrixXd lu_inverse_, la_inverse_, scaled_la_inverse_, e_;
-  Eigen::MatrixXd whitened_, residual_, alpha_, v_gradient_;  // of one block
+  Eigen::MatrixXd a_, c_, b_;                                // A, La⁻¹ Σ (R⁻¹V)ᵀ R⁻¹Y, La⁻ᵀ c
+  Eigen::MatrixXd lu_inverse_, la_inverse_, a_inverse_, e_;  // −D A⁻¹; (dL/dV)ᵀ V
+  Eigen::MatrixXd w_, p_, residual_, alpha_, v_gradient_;    // of one block
   Eigen::MatrixXd uu_gradient_;
 };
 
@@ -138,7 +140,8 @@ class DiagonalLikelihood : public LowRankLikelihood {
   void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const final;
   void whiten(const Block& block, MatrixView whitened) const final;
   bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
-                     const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) final;
+                     const ConstMatrix& w, const ConstMatrix& p, MatrixView v_gradient, MatrixView x_gradient,
+                     VectorView logs) final;
 
   std::vector<Eigen::Index> lengths_;
 };
@@ -177,7 +180,8 @@ class PitcLikelihood : public LowRankLikelihood {
   void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const override;
   void whiten(const Block& block, MatrixView whitened) const override;
   bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
-                     const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient, VectorView logs) override;
+                     const ConstMatrix& w, const ConstMatrix& p, MatrixView v_gradient, MatrixView x_gradient,
+                     VectorView logs) override;
 
   std::vector<Eigen::Index> lengths_;
 };

@@ -31,7 +31,8 @@ void LowRankLikelihood::divide(Eigen::Index n) {
     first += sizes[i];
     most = std::max(most, sizes[i]);
   }
-  whitened_.resize(most, a_.cols());
+  w_.resize(most, a_.cols());
+  p_.resize(most, a_.cols());
   residual_.resize(most, c_.cols());
   alpha_.resize(most, c_.cols());
   v_gradient_.resize(most, a_.cols());
@@ -59,10 +60,10 @@ double LowRankLikelihood::factorise(const Kernel& kernel, const ConstMatrix& x, 
     solve_transposed_right(lu_.factor(), block.v);
     block.outputs = y.middleRows(block.first, block.n);
     value += condition(kernel, inputs, block);
-    MatrixView whitened = whitened_.topRows(block.n);
-    whiten(block, whitened);
-    a_.selfadjointView<Eigen::Lower>().rankUpdate(whitened.transpose());
-    c_.noalias() += whitened.transpose() * block.outputs;
+    MatrixView w = w_.topRows(block.n);
+    whiten(block, w);
+    a_.selfadjointView<Eigen::Lower>().rankUpdate(w.transpose());
+    c_.noalias() += w.transpose() * block.outputs;
   }
   a_.triangularView<Eigen::StrictlyUpper>() = a_.transpose();
   la_.compute(a_, 0, "the inner matrix I + VᵀΛ⁻¹V");
@@ -90,35 +91,35 @@ double LowRankLikelihood::evaluate(const Kernel& kernel, const ConstMatrix& x, c
 // Let V not depend on Λ: then dL/dV = α bᵀ − D Λ⁻¹V A⁻¹, b = Vᵀα. What reaches V by way of Λ is added. V reaches the
 // likelihood by V Vᵀ alone, so that K_uu has −½ Lu⁻ᵀ E Lu⁻¹ with E = (dL/dV)ᵀ V, to which the first part gives
 // b bᵀ − D(I − A⁻¹).
-// A is not below I, so that its inverted factor, of a norm of at most 1, is as good as solving with it.
+// A is not below I, so that its inverse, of a norm of at most 1, is as good as solving with it.
 void LowRankLikelihood::add_gradient(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u,
                                      GpGradient& gradient) {
   const double d = static_cast<double>(c_.cols());
   invert_lower(lu_.factor(), lu_inverse_);
   invert_lower(la_.factor(), la_inverse_);
-  e_.setIdentity(u.rows(), u.rows());
-  e_ *= -d;
-  e_.selfadjointView<Eigen::Lower>().rankUpdate(la_inverse_.transpose(), d);
+  a_inverse_.setZero(u.rows(), u.rows());
+  a_inverse_.selfadjointView<Eigen::Lower>().rankUpdate(la_inverse_.transpose(), -d);
+  a_inverse_.triangularView<Eigen::StrictlyUpper>() = a_inverse_.transpose();
+  e_ = -a_inverse_;
+  e_.diagonal().array() -= d;
   e_.selfadjointView<Eigen::Lower>().rankUpdate(b_);
-  scaled_la_inverse_ = -d * la_inverse_;
   for (Block& block : blocks_) {
     const auto inputs = x.middleRows(block.first, block.n);
     MatrixView x_gradient = gradient.inputs.middleRows(block.first, block.n);
+    MatrixView w = w_.topRows(block.n), p = p_.topRows(block.n), v_gradient = v_gradient_.topRows(block.n);
     MatrixView residual = residual_.topRows(block.n), alpha = alpha_.topRows(block.n);
-    MatrixView v_gradient = v_gradient_.topRows(block.n), s = whitened_.topRows(block.n);
-    whiten(block, s);
-    multiply_transposed_right(la_inverse_, s);
+    whiten(block, w);
+    p.noalias() = w * a_inverse_;
     residual = block.outputs;
-    residual.noalias() -= s * c_;
+    residual.noalias() -= w * b_;
     alpha.setZero();
     add_unwhitened(block, residual, alpha);
     gradient.outputs.middleRows(block.first, block.n) = -alpha;
-    if (differentiate(kernel, inputs, block, alpha, s, v_gradient, x_gradient, gradient.kernel))
+    if (differentiate(kernel, inputs, block, alpha, w, p, v_gradient, x_gradient, gradient.kernel))
       add_symmetric(v_gradient, block.v, e_);
     else
       v_gradient.setZero();
-    multiply_right(scaled_la_inverse_, s);
-    add_unwhitened(block, s, v_gradient);
+    add_unwhitened(block, p, v_gradient);
     v_gradient.noalias() += alpha * b_.transpose();
     multiply_right(lu_inverse_, v_gradient);
     block.cross.gradient(kernel, inputs, u, v_gradient, x_gradient, gradient.inducing, gradient.kernel);

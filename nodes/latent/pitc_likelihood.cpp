@@ -39,16 +39,17 @@ void PitcLikelihood::add_unwhitened(const Block& block, MatrixView m, MatrixView
 }
 
 bool PitcLikelihood::differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
-                                   const ConstMatrix& s, MatrixView v_gradient, MatrixView x_gradient,
-                                   VectorView logs) {
+                                   const ConstMatrix& w, const ConstMatrix& p, MatrixView v_gradient,
+                                   MatrixView x_gradient, VectorView logs) {
   const auto upper = block.factor.factor().triangularView<Eigen::Lower>().transpose();
   Eigen::MatrixXd& g = block.g;
   g.setIdentity(block.n, block.n);
-  g.noalias() -= s * s.transpose();
+  g *= static_cast<double>(alpha.cols());
+  g.noalias() += p * w.transpose();
   upper.solveInPlace(g);
   g.transposeInPlace();
   upper.solveInPlace(g);
-  g *= -0.5 * static_cast<double>(alpha.cols());
+  g *= -0.5;
   g.noalias() += 0.5 * alpha * alpha.transpose();
   g.triangularView<Eigen::StrictlyUpper>() = g.transpose();
   block.factor.add_jitter_gradient(g);

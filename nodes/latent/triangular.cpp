@@ -8,11 +8,11 @@ namespace {
 
 constexpr Eigen::Index small = 32;
 
-/// B ← factor · B op(L) with side "R", factor · op(L) B with "L"; op transposes for "T".
-void multiply(const char* side, const char* transposed, double factor, const ConstMatrixBlock& l, MatrixBlock b) {
+/// B ← factor · B L with side "R", factor · L B with "L".
+void multiply(const char* side, double factor, const ConstMatrixBlock& l, MatrixBlock b) {
   const int rows = static_cast<int>(b.rows()), cols = static_cast<int>(b.cols());
   const int l_stride = static_cast<int>(l.outerStride()), b_stride = static_cast<int>(b.outerStride());
-  if (b.size() > 0) dtrmm_(side, "L", transposed, "N", &rows, &cols, &factor, l.data(), &l_stride, b.data(), &b_stride);
+  if (b.size() > 0) dtrmm_(side, "L", "N", "N", &rows, &cols, &factor, l.data(), &l_stride, b.data(), &b_stride);
 }
 
 /// Of the lower triangle of `l`, which holds a factor.
@@ -27,8 +27,8 @@ void invert_in_place(MatrixBlock l, double* memory) {
   }
   invert_in_place(l.topLeftCorner(half, half), memory);
   invert_in_place(l.bottomRightCorner(rest, rest), memory);
-  multiply("R", "N", -1, l.topLeftCorner(half, half), l.bottomLeftCorner(rest, half));
-  multiply("L", "N", 1, l.bottomRightCorner(rest, rest), l.bottomLeftCorner(rest, half));
+  multiply("R", -1, l.topLeftCorner(half, half), l.bottomLeftCorner(rest, half));
+  multiply("L", 1, l.bottomRightCorner(rest, rest), l.bottomLeftCorner(rest, half));
 }
 
 }  // namespace
@@ -45,9 +45,7 @@ void solve_transposed_right(const ConstMatrixBlock& l, MatrixBlock b) {
   solve_transposed_right(l.bottomRightCorner(rest, rest), b.rightCols(rest));
 }
 
-void multiply_right(const Eigen::MatrixXd& l, MatrixBlock b) { multiply("R", "N", 1, l, b); }
-
-void multiply_transposed_right(const Eigen::MatrixXd& l, MatrixBlock b) { multiply("R", "T", 1, l, b); }
+void multiply_right(const Eigen::MatrixXd& l, MatrixBlock b) { multiply("R", 1, l, b); }
 
 void invert_lower(const Eigen::MatrixXd& l, Eigen::MatrixXd& inverse) {
   double memory[small * small];

@@ -12,8 +12,6 @@ using ConstMatrixBlock = Eigen::Ref<const Eigen::MatrixXd>;
 void solve_transposed_right(const ConstMatrixBlock& l, MatrixBlock b);
 /// B ← B L, which BLAS does in place (Eigen's product of a triangular matrix makes copies).
 void multiply_right(const Eigen::MatrixXd& l, MatrixBlock b);
-/// B ← B Lᵀ.
-void multiply_transposed_right(const Eigen::MatrixXd& l, MatrixBlock b);
 /// L⁻¹ of a lower triangular L; above the diagonal it is zero.
 void invert_lower(const Eigen::MatrixXd& l, Eigen::MatrixXd& inverse);
 
