@@ -54,7 +54,8 @@ bool DiagonalLikelihood::differentiate(const Kernel& kernel, const ConstMatrix& 
   if (slope.isZero(0)) return false;
   slope = (block.conditional.array() > 0).select(slope, 0);
   diagonal_gradient(kernel, x, slope, x_gradient, logs);
-  scale_rows(-2 * slope, block.v, v_gradient);
+  slope *= -2;
+  scale_rows(slope, block.v, v_gradient);
   return true;
 }
 
