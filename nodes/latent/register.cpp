@@ -2,6 +2,7 @@
 
 #include "nodes/latent/gp_regression.h"
 #include "nodes/latent/gpdm.h"
+#include "nodes/latent/mrd.h"
 #include "nodes/latent/sgpdm.h"
 
 namespace talkgraph {
@@ -10,6 +11,7 @@ void register_latent(Registry& registry) {
   registry.add<TrainGp>();
   registry.add<PredictGp>();
   registry.add<TrainGpdm>();
+  registry.add<TrainMrd>();
   registry.add<TrainSgpdm>();
 }
 

@@ -1,0 +1,293 @@
+#include "nodes/latent/mrd.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "nodes/latent/bayesian_objective.h"
+#include "nodes/latent/latent_dynamics.h"
+#include "nodes/latent/linear_models.h"
+#include "nodes/latent/scg.h"
+#include "nodes/latent/stochastic_training.h"
+
+namespace talkgraph {
+
+namespace {
+
+struct Frames {
+  ObservedOutputs audio, visual;
+  std::vector<std::int64_t> lengths;
+};
+
+Frames frames_of(const StateData& data, OutputScaling audio_scaling, OutputScaling visual_scaling) {
+  if (data.audio.size() != data.visual.size())
+    throw std::runtime_error(fmt::format("{} audio windows but {} visual", data.audio.size(), data.visual.size()));
+  if (data.audio.empty()) throw std::runtime_error("no training windows; map it to a shorter label (context.windows)");
+  Frames frames;
+  for (std::size_t i = 0; i < data.audio.size(); ++i) {
+    const auto &y = data.audio[i], &z = data.visual[i];
+    if (y.rows() != z.rows() || y.rows() == 0 || y.cols() != data.audio[0].cols() || y.cols() == 0 ||
+        z.cols() != data.visual[0].cols() || z.cols() == 0)
+      throw std::runtime_error(
+          fmt::format("window {} is {} × {} of audio and {} × {} of visual features: both need as many frames, at least "
+                      "one, and the dimensions of window 0",
+                      i, y.rows(), y.cols(), z.rows(), z.cols()));
+    frames.lengths.push_back(y.rows());
+  }
+  const auto stacked = [&](const std::vector<Eigen::MatrixXd>& windows) {
+    Eigen::MatrixXd all(std::accumulate(frames.lengths.begin(), frames.lengths.end(), std::int64_t{0}),
+                        windows[0].cols());
+    Eigen::Index row = 0;
+    for (const auto& w : windows) {
+      all.middleRows(row, w.rows()) = w;
+      row += w.rows();
+    }
+    return all;
+  };
+  frames.audio = observed_outputs(stacked(data.audio), audio_scaling, "audio");
+  frames.visual = observed_outputs(stacked(data.visual), visual_scaling, "visual");
+  return frames;
+}
+
+/// Principal components of both streams side by side, each of the same weight; unit variance where they vary.
+Eigen::MatrixXd start_latents(const Frames& f, Eigen::Index d) {
+  Eigen::MatrixXd both(f.audio.rows(), f.audio.outputs() + f.visual.outputs());
+  both << f.audio.values / std::sqrt(static_cast<double>(f.audio.outputs())),
+      f.visual.values / std::sqrt(static_cast<double>(f.visual.outputs()));
+  Eigen::MatrixXd x = fit_ppca(both, d).posterior_mean(both);
+  for (Eigen::Index q = 0; q < d; ++q) {
+    const double deviation = std::sqrt(x.col(q).squaredNorm() / static_cast<double>(x.rows()));
+    x.col(q) *= deviation > 1e-6 ? 1 / deviation : 0;
+  }
+  return x;
+}
+
+/// Inverse widths of 1 for the latent dimension that explains most of a stream by itself, for others by their share.
+Eigen::VectorXd start_widths(const ObservedOutputs& y, const Eigen::MatrixXd& x) {
+  const Eigen::VectorXd explained = (x.transpose() * y.values).rowwise().squaredNorm();
+  return (explained / std::max(explained.maxCoeff(), 1e-300)).cwiseMax(0.05);
+}
+
+Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count) {
+  Eigen::MatrixXd chosen(count, x.cols());
+  for (Eigen::Index i = 0; i < count; ++i) chosen.row(i) = x.row(i * x.rows() / count);
+  return chosen;
+}
+
+struct Relevance {
+  Eigen::VectorXd audio, visual;  ///< of the dimensions that stay, most relevant first
+  std::vector<Eigen::Index> kept;
+  int shared = 0, audio_only = 0, visual_only = 0;
+};
+
+Eigen::VectorXd relevance_to(const VariationalStream& stream, const Eigen::MatrixXd& mean) {
+  const Eigen::MatrixXd centred = mean.rowwise() - mean.colwise().mean();
+  const Eigen::VectorXd r = stream.process().kernel.inverse_widths.cwiseProduct(
+      centred.colwise().squaredNorm().transpose() / static_cast<double>(mean.rows()));
+  if (!stream.outputs().varies) return Eigen::VectorXd::Zero(r.size());
+  return r / std::max(r.maxCoeff(), 1e-300);
+}
+
+Relevance relevance_of(const VariationalStream& audio, const VariationalStream& visual, const Eigen::MatrixXd& mean,
+                       double least) {
+  const Eigen::VectorXd a = relevance_to(audio, mean), v = relevance_to(visual, mean), sum = a + v;
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(sum.size()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto i, auto j) { return sum[i] > sum[j]; });
+  Relevance r;
+  for (const auto q : order) {
+    const bool heard = a[q] >= least, seen = v[q] >= least;
+    r.shared += heard && seen;
+    r.audio_only += heard && !seen;
+    r.visual_only += !heard && seen;
+    if (heard || seen || r.kept.empty()) r.kept.push_back(q);
+  }
+  r.audio = a(r.kept);
+  r.visual = v(r.kept);
+  return r;
+}
+
+/// The stream's process seen through the dimensions that stay.
+GaussianProcess process_of(const VariationalStream& stream, const GaussianRows& q,
+                           const std::vector<Eigen::Index>& kept) {
+  VariationalProcess reduced = stream.process();
+  reduced.inducing = reduced.inducing(Eigen::all, kept).eval();
+  reduced.kernel.inverse_widths = reduced.kernel.inverse_widths(kept).eval();
+  VariationalStream seen(stream.name(), stream.outputs(), reduced);
+  seen.begin(reduced.parameters());
+  GaussianProcess gp = seen.posterior({q.mean(Eigen::all, kept), q.variance(Eigen::all, kept)});
+  gp.kernel.terms = {ArdTerm{reduced.kernel.variance, reduced.kernel.inverse_widths}, BiasTerm{reduced.kernel.bias},
+                     WhiteTerm{reduced.noise, reduced.minimum_noise}};
+  return gp;
+}
+
+Table relevance_table(const std::string& label, const Relevance& r, double least) {
+  Table table{fmt::format("Relevance of latent dimensions of state \"{}\"", label), "dimension",
+              {"audio", "visual"}, {}, {}};
+  for (Eigen::Index i = 0; i < r.audio.size(); ++i) {
+    const bool heard = r.audio[i] >= least, seen = r.visual[i] >= least;
+    table.rows.push_back(
+        fmt::format("{} ({})", i + 1, heard && seen ? "shared" : heard ? "audio" : seen ? "visual" : "neither"));
+    table.cells.push_back({r.audio[i], r.visual[i]});
+  }
+  return table;
+}
+
+struct Trained {
+  Eigen::VectorXd parameters;
+  double bound = 0;
+  int iterations = 0;
+  std::string end;
+};
+
+Trained train_whole(const TrainMrd& node, BayesianObjective& objective, Context& context) {
+  Trained trained{objective.start(), 0, 0, ""};
+  ScaledConjugateGradients optimiser;
+  const int all = node.noise_held + node.iterations;
+  for (const bool hold : {true, false}) {
+    optimiser.iterations = hold ? node.noise_held : node.iterations;
+    optimiser.on_iteration = [&](int i, double) {
+      context.check_cancelled();
+      context.progress(static_cast<double>(hold ? i : node.noise_held + i) / all);
+    };
+    objective.hold_noise(hold);
+    const OptimiserReport report = optimiser.minimise(objective, trained.parameters);
+    trained.iterations += report.iterations;
+    trained.end = str(report.reason);
+  }
+  trained.bound = objective.bound(trained.parameters, nullptr);
+  return trained;
+}
+
+Trained train_in_parts(const TrainMrd& node, BayesianObjective& objective, Context& context, Random& random) {
+  StochasticTraining training;
+  training.batch = node.batch;
+  training.epochs = node.epochs;
+  training.noise_held = node.epochs * node.noise_held / std::max(1, node.noise_held + node.iterations);
+  training.on_part = [&](int, double share, double) {
+    context.check_cancelled();
+    context.progress(share);
+  };
+  Trained trained{training(objective, random), 0, node.epochs, "epochs"};
+  trained.bound = objective.bound(trained.parameters, nullptr);
+  return trained;
+}
+
+Trained untrained(BayesianObjective& objective) {
+  return {objective.start(), objective.bound(objective.start(), nullptr), 0, "nothing varies"};
+}
+
+BayesianObjective objective_of(const TrainMrd& node, const Frames& frames) {
+  const Eigen::Index n = frames.audio.rows(), outputs = frames.audio.outputs() + frames.visual.outputs();
+  const Eigen::Index d = std::max<Eigen::Index>(1, std::min<Eigen::Index>({node.latent_dimension, outputs, n - 1}));
+  const Eigen::MatrixXd x = start_latents(frames, d);
+  std::vector<VariationalStream> streams;
+  for (const auto* y : {&frames.audio, &frames.visual}) {
+    VariationalProcess process;
+    process.kernel.inverse_widths = start_widths(*y, x);
+    process.minimum_noise = node.minimum_noise;
+    process.noise = std::max(node.noise, 2 * node.minimum_noise);
+    process.inducing = spread(x, std::min<Eigen::Index>(node.inducing, n));
+    streams.emplace_back(y == &frames.audio ? "audio" : "visual", *y, std::move(process));
+  }
+  return {LatentPosterior(frames.lengths, node.time_width), std::move(streams), x, 0.1};
+}
+
+}  // namespace
+
+TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Random& random) const try {
+  const Frames frames = frames_of(data, audio_scaling, visual_scaling);
+  BayesianObjective objective = objective_of(*this, frames);
+  const Trained trained = !frames.audio.varies && !frames.visual.varies ? untrained(objective)
+                          : batch > 0 ? train_in_parts(*this, objective, context, random)
+                                      : train_whole(*this, objective, context);
+  const GaussianRows q = objective.posterior(trained.parameters);
+  const auto &audio = objective.streams()[0], &visual = objective.streams()[1];
+  const Relevance r = relevance_of(audio, visual, q.mean, relevant);
+  const Eigen::Index n = objective.rows();
+
+  Out out;
+  out.model.label = data.label;
+  out.model.latents = q.mean(Eigen::all, r.kept);
+  out.model.lengths = frames.lengths;
+  out.model.audio_frames = frames.audio.values;
+  out.model.audio = process_of(audio, q, r.kept);
+  out.model.visual = process_of(visual, q, r.kept);
+  if (dynamics && n > static_cast<Eigen::Index>(frames.lengths.size()))
+    out.model.dynamics = fit_dynamics(out.model.latents, frames.lengths, dynamics_inverse_width, inducing, 20);
+  out.model.dynamics_bias =
+      dynamics_bias ? static_cast<double>(std::max(frames.audio.outputs(), frames.visual.outputs())) /
+                          static_cast<double>(out.model.latents.cols())
+                    : 1;
+  out.model.first_variance = first_variance;
+  out.model.log_likelihood = trained.bound;
+  out.model.iterations = trained.iterations;
+  out.model.jitter = objective.jitter();
+
+  out.relevance = relevance_table(data.label, r, relevant);
+  out.dimensions = {"Latent dimensions found", "state",
+                    {"frames", "shared", "audio only", "visual only", "bound a frame"}, {data.label},
+                    {{static_cast<double>(n), static_cast<double>(r.shared), static_cast<double>(r.audio_only),
+                      static_cast<double>(r.visual_only), trained.bound / static_cast<double>(n)}}};
+  context.log(fmt::format(
+      "state \"{}\": {} frames in {} windows, bound {:.1f} after {} iterations ({}); of {} dimensions {} shared, {} of "
+      "audio, {} of visual only; relevance to audio {:.2f}, to visual {:.2f}",
+      data.label, n, frames.lengths.size(), trained.bound, trained.iterations, trained.end, objective.dimension(),
+      r.shared, r.audio_only, r.visual_only, fmt::join(r.audio, " "), fmt::join(r.visual, " ")));
+  return out;
+} catch (const Cancelled&) {
+  throw;
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error("state \"" + data.label + "\": " + e.what());
+}
+
+void describe(Description<TrainMrd>& d) {
+  d.type("latent.mrd").version(1).stored();
+  d.summary("trains a state's shared latent model, finding its dimension and what each stream needs of it");
+  d.source("Titsias & Lawrence 2010; Damianou, Titsias & Lawrence 2011; Damianou, Ek, Titsias & Lawrence 2012");
+  d.input("windows", "training windows of one state, NaN where a value is missing");
+  d.output("model", &TrainMrd::Out::model, "audio and visual processes of one latent trajectory")
+      .output("relevance", &TrainMrd::Out::relevance, "of each dimension that stays, to audio and visual stream")
+      .output("dimensions", &TrainMrd::Out::dimensions, "how many are shared, of audio only, of visual only");
+  d.param("latent_dimension", &TrainMrd::latent_dimension)
+      .at_least(1)
+      .doc("dimensions to choose from, lowered to those of both streams and to the number of frames less one");
+  d.param("inducing", &TrainMrd::inducing).at_least(1).doc("inducing points of each process");
+  d.param("iterations", &TrainMrd::iterations).at_least(0).doc("limit of scaled conjugate gradients");
+  d.param("noise_held", &TrainMrd::noise_held)
+      .at_least(0)
+      .doc("iterations before those with the noise held, so that it does not swallow the signal");
+  d.param("batch", &TrainMrd::batch)
+      .at_least(0)
+      .doc("frames of a part in stochastic training; 0: all at once, by conjugate gradients");
+  d.param("epochs", &TrainMrd::epochs)
+      .at_least(0)
+      .doc("passes of stochastic training over all frames; of them a share noise_held / (noise_held + iterations) hold "
+           "the noise");
+  d.param("time_width", &TrainMrd::time_width)
+      .at_least(0)
+      .doc("width in frames of a prior over time on each window's latent path; 0: none");
+  d.param("audio_scaling", &TrainMrd::audio_scaling).doc("as visual_scaling, of the audio frames");
+  d.param("visual_scaling", &TrainMrd::visual_scaling)
+      .doc("per_dimension gives every dimension the same weight; common keeps the ratios of their variances");
+  d.param("noise", &TrainMrd::noise).positive().doc("noise variance to start from, in scaled units");
+  d.param("minimum_noise", &TrainMrd::minimum_noise).at_least(0).doc("noise variance stays above this");
+  d.param("relevant", &TrainMrd::relevant)
+      .within(0, 1)
+      .doc("least relevance, as a share of the largest, of a dimension that a stream is said to need");
+  d.param("dynamics", &TrainMrd::dynamics).doc("off: none are learnt");
+  d.param("dynamics_bias", &TrainMrd::dynamics_bias)
+      .doc("the dynamics weigh larger dimension / latent dimension in synthesis");
+  d.param("dynamics_inverse_width", &TrainMrd::dynamics_inverse_width)
+      .positive()
+      .doc("of the RBF part of the dynamics kernel");
+  d.param("first_variance", &TrainMrd::first_variance)
+      .positive()
+      .doc("variance of the prior of a segment's first latent point in synthesis");
+}
+
+}  // namespace talkgraph
