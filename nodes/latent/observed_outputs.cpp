@@ -1,0 +1,89 @@
+#include "nodes/latent/observed_outputs.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+namespace talkgraph {
+
+namespace {
+
+using Pattern = std::vector<bool>;
+
+void check(const Eigen::MatrixXd& values, const std::string& stream) {
+  for (Eigen::Index c = 0; c < values.cols(); ++c) {
+    if (values.col(c).array().isInf().any())
+      throw std::runtime_error(fmt::format("the {} stream has an infinite value in dimension {}", stream, c));
+    if (values.col(c).array().isNaN().all())
+      throw std::runtime_error(
+          fmt::format("dimension {} of the {} stream is missing in all {} frames: leave it out, or give frames that "
+                      "have it",
+                      c, stream, values.rows()));
+  }
+}
+
+void centre(ObservedOutputs& y, const Eigen::MatrixXd& given, OutputScaling scaling) {
+  y.values = given;
+  y.mean.resize(given.cols());
+  y.scale.setOnes(given.cols());
+  Eigen::RowVectorXd deviation(given.cols());
+  for (Eigen::Index c = 0; c < given.cols(); ++c) {
+    const auto seen = (!given.col(c).array().isNaN()).eval();
+    const double count = static_cast<double>(seen.count());
+    y.mean[c] = seen.select(given.col(c).array(), 0.0).sum() / count;
+    y.values.col(c) = seen.select(given.col(c).array() - y.mean[c], 0.0);
+    deviation[c] = std::sqrt(y.values.col(c).squaredNorm() / count);
+  }
+  const double common = std::sqrt(deviation.squaredNorm() / static_cast<double>(given.cols()));
+  y.varies = common > 1e-12 * (1 + y.mean.cwiseAbs().maxCoeff());
+  if (y.varies && scaling == OutputScaling::common) y.scale.setConstant(common);
+  if (y.varies && scaling == OutputScaling::per_dimension)
+    y.scale = (deviation.array() > 1e-6 * common).select(deviation, y.scale);
+  y.values.array().rowwise() /= y.scale.array();
+}
+
+/// Numbers of equal patterns, in the order in which they are first met.
+std::vector<std::vector<Eigen::Index>> equal_patterns(const std::vector<Pattern>& patterns) {
+  std::map<Pattern, std::size_t> known;
+  std::vector<std::vector<Eigen::Index>> members;
+  for (std::size_t i = 0; i < patterns.size(); ++i) {
+    const auto [at, fresh] = known.emplace(patterns[i], members.size());
+    if (fresh) members.emplace_back();
+    members[at->second].push_back(static_cast<Eigen::Index>(i));
+  }
+  return members;
+}
+
+void group(ObservedOutputs& y, const Eigen::MatrixXd& given) {
+  std::vector<Pattern> by_output;
+  for (Eigen::Index c = 0; c < given.cols(); ++c) {
+    by_output.emplace_back();
+    for (Eigen::Index n = 0; n < given.rows(); ++n) by_output.back().push_back(!std::isnan(given(n, c)));
+  }
+  y.groups = equal_patterns(by_output);
+  std::vector<Pattern> by_row(static_cast<std::size_t>(given.rows()));
+  for (std::size_t n = 0; n < by_row.size(); ++n)
+    for (const auto& outputs : y.groups) by_row[n].push_back(by_output[static_cast<std::size_t>(outputs[0])][n]);
+  for (auto& rows : equal_patterns(by_row)) {
+    ObservedOutputs::Class c;
+    const Pattern& has = by_row[static_cast<std::size_t>(rows[0])];
+    for (std::size_t g = 0; g < has.size(); ++g)
+      if (has[g]) c.groups.push_back(g);
+    c.rows = std::move(rows);
+    if (!c.groups.empty()) y.classes.push_back(std::move(c));
+  }
+}
+
+}  // namespace
+
+ObservedOutputs observed_outputs(const Eigen::MatrixXd& values, OutputScaling scaling, const std::string& stream) {
+  check(values, stream);
+  ObservedOutputs y;
+  centre(y, values, scaling);
+  group(y, values);
+  return y;
+}
+
+}  // namespace talkgraph

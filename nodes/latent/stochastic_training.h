@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+
+#include "graph/random.h"
+#include "nodes/latent/bayesian_objective.h"
+
+namespace talkgraph {
+
+/// Raises the bound of a Bayesian latent model on a part of the windows at a time. Each part takes one natural
+/// gradient step of the inducing variables (Hensman, Fusi and Lawrence 2013) and one of Adam (Kingma and Ba 2015) on
+/// the parameters of the processes and on the latent points of its own frames. A step costs as much for any number of
+/// frames in all; memory beyond parameters and data is that of a part.
+struct StochasticTraining {
+  int batch = 500;  ///< frames of a part, at least; windows stay whole
+  int epochs = 50;  ///< each takes every window once, in random order
+  int noise_held = 10;  ///< epochs before which noise stays where it is
+  double rate = 0.01;          ///< Adam's step of the processes, falling to a tenth
+  double latent_rate = 0.05;   ///< that of the latent points
+  std::function<void(int epoch, double share, double bound)> on_part;
+
+  /// From objective.start(): the parameters reached. The bound given to on_part is an estimate from the part.
+  /// Throws FactorisationError.
+  Eigen::VectorXd operator()(BayesianObjective& objective, Random& random) const;
+};
+
+}  // namespace talkgraph
