@@ -53,10 +53,6 @@ Eigen::MatrixXd InducingVariables::unwhitened_square(const Eigen::MatrixXd& a) c
   return 0.5 * (b + b.transpose());
 }
 
-void InducingVariables::add_jitter_gradient(Eigen::MatrixXd& g) const {
-  g.diagonal().array() += cholesky_.jitter() * g.trace() / static_cast<double>(count());
-}
-
 // With T = L⁻¹Ψ2L⁻ᵀ, A = I + βT, c = A^−½L⁻¹Ψ1ᵀY of the n rows and D outputs of a group, the bound is
 //   −½nD ln(2π/β) − ½β|Y|² + ½β²|c|² − ½D ln|A| − ½βD(n k(x, x) − tr T).
 void CollapsedBound::factorise(const InducingVariables& u, const RowStatistics& rows,

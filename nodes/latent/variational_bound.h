@@ -44,8 +44,8 @@ class InducingVariables {
   /// L⁻¹AL⁻ᵀ and L⁻ᵀAL⁻¹ of a symmetric A.
   Eigen::MatrixXd whitened_square(const Eigen::MatrixXd& a) const;
   Eigen::MatrixXd unwhitened_square(const Eigen::MatrixXd& a) const;
-  /// Derivative by k(U, U) without its jitter.
-  void add_jitter_gradient(Eigen::MatrixXd& g) const;
+  /// Turns the derivative by k(U, U) with jitter into that without.
+  void add_jitter_gradient(Eigen::MatrixXd& g) const { cholesky_.add_jitter_gradient(g); }
   double jitter() const { return cholesky_.jitter(); }
 
  private:
