@@ -3,6 +3,7 @@
 #include "nodes/latent/gp_regression.h"
 #include "nodes/latent/gpdm.h"
 #include "nodes/latent/mrd.h"
+#include "nodes/latent/sequences.h"
 #include "nodes/latent/sgpdm.h"
 
 namespace talkgraph {
@@ -12,6 +13,7 @@ void register_latent(Registry& registry) {
   registry.add<PredictGp>();
   registry.add<TrainGpdm>();
   registry.add<TrainMrd>();
+  registry.add<Sequences>();
   registry.add<TrainSgpdm>();
 }
 

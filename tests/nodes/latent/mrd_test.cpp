@@ -1,0 +1,270 @@
+#include "nodes/latent/mrd.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "nodes/latent/latent_dynamics.h"
+#include "nodes/latent/predictive.h"
+#include "nodes/latent/sequence_objective.h"
+#include "nodes/latent/sequences.h"
+#include "tests/nodes/latent/gaussian.h"
+
+namespace talkgraph {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::gaussian;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Outputs of a Gaussian process over x, with noise of a tenth of their deviation.
+Eigen::MatrixXd drawn(const Eigen::MatrixXd& x, Eigen::Index outputs, std::uint64_t seed) {
+  Eigen::MatrixXd k(x.rows(), x.rows());
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    for (Eigen::Index j = 0; j < x.rows(); ++j) k(i, j) = std::exp(-0.15 * (x.row(i) - x.row(j)).squaredNorm());
+  k.diagonal().array() += 1e-6;
+  const Eigen::MatrixXd root = k.llt().matrixL();
+  return root * gaussian(x.rows(), outputs, seed) + 0.1 * gaussian(x.rows(), outputs, seed + 1);
+}
+
+/// Latent dimension 0 is shared, 1 is of the audio only, 2 of the visual stream only.
+StateData shared_and_private(Eigen::Index frames, std::uint64_t seed) {
+  const Eigen::MatrixXd x = gaussian(frames, 3, seed);
+  return {"k-ae", {drawn(x(Eigen::all, {0, 1}), 12, seed + 10)}, {drawn(x(Eigen::all, {0, 2}), 15, seed + 20)}};
+}
+
+TrainMrd::Out trained(const TrainMrd& node, const StateData& data) {
+  Context context;
+  Random random(1);
+  return node(data, context, random);
+}
+
+std::string failure(const StateData& data) {
+  try {
+    trained({}, data);
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(TrainMrd, FindsSharedAndPrivateDimensions) {
+  for (std::uint64_t seed = 100; seed < 103; ++seed) {
+    const auto out = trained({}, shared_and_private(100, seed));
+    EXPECT_THAT(out.dimensions.cells[0], ::testing::Contains(100.0));
+    EXPECT_EQ(out.dimensions.cells[0][1], 1) << "shared, seed " << seed;
+    EXPECT_EQ(out.dimensions.cells[0][2], 1) << "audio, seed " << seed;
+    EXPECT_EQ(out.dimensions.cells[0][3], 1) << "visual, seed " << seed;
+    EXPECT_EQ(out.model.latents.cols(), 3);
+    EXPECT_THAT(out.relevance.rows, ElementsAre("1 (shared)", HasSubstr("2 ("), HasSubstr("3 (")));
+  }
+}
+
+TEST(TrainMrd, FindsTheDimensionOfOneModel) {
+  const Eigen::MatrixXd x = gaussian(120, 3, 5);
+  const StateData data{"a", {drawn(x, 12, 6)}, {drawn(x, 12, 8)}};
+  const auto out = trained({}, data);
+  EXPECT_EQ(out.dimensions.cells[0][1], 3);
+  EXPECT_EQ(out.dimensions.cells[0][2] + out.dimensions.cells[0][3], 0);
+}
+
+TEST(TrainMrd, FindsThemInPartsToo) {
+  TrainMrd node;
+  node.batch = 40;
+  node.epochs = 600;
+  const auto out = trained(node, shared_and_private(120, 100));
+  EXPECT_EQ(out.dimensions.cells[0][1], 1);
+  EXPECT_EQ(out.dimensions.cells[0][2], 1);
+  EXPECT_EQ(out.dimensions.cells[0][3], 1);
+}
+
+/// Mean squared error of the visual frames at their latent points where `at` holds, as a share of that of the mean.
+double error_at(const Sgpdm& model, const Eigen::MatrixXd& truth, const Eigen::Array<bool, -1, -1>& at) {
+  Predictive p;
+  p.compute(model.visual, model.latents);
+  const Eigen::ArrayXXd error = (unscaled(model.visual, p.mean()) - truth).array().square();
+  const Eigen::ArrayXXd power = (truth.rowwise() - model.visual.mean).array().square();
+  return at.select(error, 0.0).sum() / at.select(power, 0.0).sum();
+}
+
+TEST(TrainMrd, RecoversMissingValues) {
+  const Eigen::MatrixXd x = gaussian(100, 2, 3);
+  StateData data{"a", {drawn(x, 12, 4)}, {drawn(x, 10, 6)}};
+  const Eigen::MatrixXd truth = data.visual[0];
+  Random random(4);
+  Eigen::Array<bool, -1, -1> missing = Eigen::Array<bool, -1, -1>::Constant(100, 10, false);
+  for (auto& m : missing.reshaped()) m = random.uniform() < 0.1;
+  missing.middleRows(20, 10).setConstant(true);
+  data.visual[0] = missing.select(Eigen::MatrixXd::Constant(100, 10, nan), truth);
+  data.audio[0](3, 4) = nan;
+  const auto out = trained({}, data);
+  EXPECT_LT(error_at(out.model, truth, missing), 0.15);
+  EXPECT_LT(error_at(out.model, truth, !missing), 0.05);
+  EXPECT_TRUE(out.model.audio_frames.allFinite());
+}
+
+TEST(TrainMrd, FillsLostFramesFromTheirNeighboursInTime) {
+  Eigen::MatrixXd x(60, 2);
+  for (Eigen::Index t = 0; t < 60; ++t) x.row(t) << std::sin(0.15 * static_cast<double>(t)), std::cos(0.1 * static_cast<double>(t));
+  x *= 1.5;
+  StateData data{"a", {drawn(x, 12, 4)}, {drawn(x, 10, 6)}};
+  const Eigen::MatrixXd truth = data.visual[0];
+  Eigen::Array<bool, -1, -1> missing = Eigen::Array<bool, -1, -1>::Constant(60, 10, false);
+  missing.middleRows(30, 3).setConstant(true);
+  data.audio[0].middleRows(30, 3).setConstant(nan);
+  data.visual[0].middleRows(30, 3).setConstant(nan);
+  TrainMrd node;
+  node.time_width = 5;
+  EXPECT_LT(error_at(trained(node, data).model, truth, missing), 0.3);
+}
+
+void expect_usable(const Sgpdm& model) {
+  EXPECT_TRUE(model.latents.allFinite());
+  EXPECT_GE(model.latents.cols(), 1);
+  EXPECT_TRUE(std::isfinite(model.log_likelihood));
+  Predictive p;
+  for (const auto* gp : {&model.audio, &model.visual}) {
+    p.compute(*gp, model.latents);
+    EXPECT_TRUE(unscaled(*gp, p.mean()).allFinite());
+    EXPECT_TRUE(p.variance().allFinite() && (p.variance().array() > 0).all());
+  }
+  if (model.dynamics) {
+    p.compute(*model.dynamics, model.latents);
+    EXPECT_TRUE(p.mean().allFinite());
+  }
+}
+
+TEST(TrainMrd, AnswersDegenerateData) {
+  for (const int batch : {0, 5}) {
+    TrainMrd node;
+    node.batch = batch;
+    node.epochs = node.iterations = 20;
+    const auto windows = [](int count, Eigen::Index length) {
+      StateData data{"a", {}, {}};
+      for (int i = 0; i < count; ++i) {
+        data.audio.push_back(gaussian(length, 4, 10 + static_cast<std::uint64_t>(i)));
+        data.visual.push_back(gaussian(length, 3, 20 + static_cast<std::uint64_t>(i)));
+      }
+      return data;
+    };
+    const auto one = trained(node, windows(1, 1)).model;
+    expect_usable(one);
+    EXPECT_FALSE(one.dynamics);
+    EXPECT_EQ(one.latents.cols(), 1);
+    expect_usable(trained(node, windows(2, 1)).model);
+    expect_usable(trained(node, windows(1, 3)).model);
+    StateData constant = windows(3, 4);
+    for (auto& y : constant.audio) y.setConstant(3);
+    expect_usable(trained(node, constant).model);
+    for (auto& z : constant.visual) z.setConstant(-2);
+    const auto still = trained(node, constant).model;
+    expect_usable(still);
+    Predictive p;
+    p.compute(still.visual, still.latents);
+    EXPECT_TRUE(unscaled(still.visual, p.mean()).isApproxToConstant(-2, 1e-9));
+    StateData twice = windows(2, 5);
+    twice.audio[1] = twice.audio[0];
+    twice.visual[1] = twice.visual[0];
+    expect_usable(trained(node, twice).model);
+    StateData scales = windows(4, 5);
+    for (auto& y : scales.audio) y *= 1e8;
+    for (auto& z : scales.visual) z *= 1e-8;
+    scales.audio[0].col(1).setConstant(1);
+    expect_usable(trained(node, scales).model);
+    StateData gaps = windows(4, 5);
+    gaps.visual[1].setConstant(nan);
+    gaps.audio[2].row(1).setConstant(nan);
+    gaps.visual[2].row(1).setConstant(nan);
+    expect_usable(trained(node, gaps).model);
+  }
+}
+
+TEST(TrainMrd, RefusesWhatItCannotTrainOn) {
+  EXPECT_THAT(failure({"x", {}, {}}), HasSubstr("state \"x\": no training windows"));
+  StateData data = shared_and_private(6, 1);
+  data.visual[0].conservativeResize(5, Eigen::NoChange);
+  EXPECT_THAT(failure(data), HasSubstr("window 0 is 6 × 12 of audio and 5 × 15 of visual"));
+  data = shared_and_private(6, 1);
+  data.audio[0](2, 3) = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(failure(data), HasSubstr("audio stream has an infinite value in dimension 3"));
+  data = shared_and_private(6, 1);
+  data.visual[0].col(4).setConstant(nan);
+  EXPECT_THAT(failure(data), HasSubstr("dimension 4 of the visual stream is missing in all 6 frames"));
+  data.visual[0].setConstant(nan);
+  EXPECT_THAT(failure(data), HasSubstr("is missing in all 6 frames"));
+}
+
+TEST(TrainMrd, GivesTheSameBitsAgain) {
+  StateData data = shared_and_private(60, 1);
+  data.audio[0](3, 3) = nan;
+  for (const int batch : {0, 20}) {
+    TrainMrd node;
+    node.batch = batch;
+    node.iterations = 20;
+    const auto a = trained(node, data).model, b = trained(node, data).model;
+    EXPECT_EQ(a.latents, b.latents);
+    EXPECT_EQ(a.visual.weights, b.visual.weights);
+    EXPECT_EQ(a.log_likelihood, b.log_likelihood);
+  }
+}
+
+TEST(TrainMrd, StopsWhenCancelled) {
+  std::atomic<bool> cancel = true;
+  Context context;
+  context.cancel = &cancel;
+  Random random(1);
+  TrainMrd node;
+  EXPECT_THROW(node(shared_and_private(30, 1), context, random), Cancelled);
+  node.batch = 10;
+  EXPECT_THROW(node(shared_and_private(30, 1), context, random), Cancelled);
+}
+
+TEST(TrainMrd, ModelsServeSynthesis) {
+  TrainMrd node;
+  node.iterations = 30;
+  const Sgpdm model = trained(node, shared_and_private(60, 2)).model;
+  ASSERT_TRUE(model.dynamics);
+  SequenceObjective objective(model, model.audio_frames.topRows(5), true);
+  const auto check = check_gradient(objective, model.latents.topRows(5).reshaped());
+  EXPECT_TRUE(check.evaluated && check.cost_consistent);
+  EXPECT_LT(check.worst, 1e-6);
+}
+
+TEST(FitDynamics, LearnsADecay) {
+  Eigen::MatrixXd x = gaussian(200, 1, 1);
+  for (Eigen::Index t = 1; t < 200; ++t) x(t, 0) = 0.8 * x(t - 1, 0) + 0.1 * x(t, 0);
+  for (const int inducing : {20, 500}) {
+    const GaussianProcess h = fit_dynamics(x, {100, 100}, 1, inducing, 30);
+    Predictive p;
+    p.compute(h, Eigen::MatrixXd::Constant(1, 1, 0.2));
+    EXPECT_NEAR(p.mean()(0), 0.16, 0.03);
+    EXPECT_NEAR(std::sqrt(p.variance()[0]), 0.1, 0.03);
+  }
+}
+
+TEST(Sequences, AreWindowsWithGapsWhereFramesAreLost) {
+  Collected<Track> audio, visual;
+  audio.add("a", std::make_shared<Track>(Track{gaussian(5, 2, 1)}));
+  audio.add("b", std::make_shared<Track>(Track{gaussian(4, 2, 2)}));
+  audio.add("c", std::make_shared<Track>(Track{gaussian(4, 2, 2)}));
+  Track track{gaussian(6, 3, 3)};
+  track.lost = {1, 5};
+  visual.add("a", std::make_shared<Track>(track));
+  visual.add("b", std::make_shared<Track>(Track{gaussian(4, 3, 4)}));
+  const StateData data = Sequences{}(audio, visual);
+  ASSERT_EQ(data.audio.size(), 2u);
+  EXPECT_EQ(data.visual[0].rows(), 5);
+  EXPECT_TRUE(data.visual[0].row(1).array().isNaN().all());
+  EXPECT_TRUE(data.visual[0].row(0).allFinite() && data.audio[0].allFinite() && data.visual[1].allFinite());
+  visual.add("c", std::make_shared<Track>(Track{gaussian(9, 3, 4)}));
+  EXPECT_THROW(Sequences{}(audio, visual), std::runtime_error);
+  EXPECT_THROW(Sequences{}(audio, {}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace talkgraph
