@@ -1,6 +1,7 @@
 #include "nodes/context/windows.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -21,6 +22,7 @@ struct Sequence {
   std::vector<Unit> units;
   const Track* audio;
   const Track* visual;
+  std::vector<std::int64_t> cuts;  ///< lost frames that no window may hold
 };
 
 struct State {
@@ -30,7 +32,7 @@ struct State {
 };
 
 std::vector<Sequence> pair_up(const Collected<FrameLabels>& labels, const Collected<Track>& audio,
-                              const Collected<Track>& visual, bool runs) {
+                              const Collected<Track>& visual, bool runs, bool gaps) {
   std::vector<Sequence> sequences;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const Track* a = audio.find(labels.key(i));
@@ -43,7 +45,8 @@ std::vector<Sequence> pair_up(const Collected<FrameLabels>& labels, const Collec
       throw std::runtime_error(labels.key(i) + ": " + std::to_string(n) + " labels, " + std::to_string(a->frames()) +
                                " audio frames, " + std::to_string(v->frames()) +
                                " visual frames; bring all to one rate");
-    sequences.push_back({shortest, units({phones.begin(), phones.begin() + shortest}, runs), a, v});
+    sequences.push_back({shortest, units({phones.begin(), phones.begin() + shortest}, runs), a, v, {}});
+    if (!gaps) sequences.back().cuts = v->lost;
   }
   if (sequences.empty())
     throw std::runtime_error("no training sequence has labels, sound and face: is the selection empty?");
@@ -62,12 +65,12 @@ std::map<std::string, State> states_of(const Vlmm& vlmm, StateKind kind) {
   return states;
 }
 
-bool has_lost(const Track& track, std::int64_t from, std::int64_t to) {
-  const auto first = std::lower_bound(track.lost.begin(), track.lost.end(), from);
-  return first != track.lost.end() && *first < to;
+bool has_cut(const Sequence& sequence, std::int64_t from, std::int64_t to) {
+  const auto first = std::lower_bound(sequence.cuts.begin(), sequence.cuts.end(), from);
+  return first != sequence.cuts.end() && *first < to;
 }
 
-/// Every stretch of units that equals a label and has no lost frame.
+/// Every stretch of units that equals a label and has no cut.
 void add_windows(const std::vector<Sequence>& sequences, std::map<std::string, State>& states) {
   std::size_t longest = 0;
   for (const auto& [label, state] : states) longest = std::max(longest, label_phones(label).size());
@@ -79,7 +82,7 @@ void add_windows(const std::vector<Sequence>& sequences, std::map<std::string, S
       for (std::size_t first = end; first > 0 && end - first < longest; --first) {
         const Unit& oldest = parts[first - 1];
         label = oldest.phone + (label.empty() ? "" : "-") + label;
-        if (has_lost(*sequences[s].visual, oldest.start, stop)) break;
+        if (has_cut(sequences[s], oldest.start, stop)) break;
         if (const auto it = states.find(label); it != states.end())
           it->second.windows.push_back({s, oldest.start, stop - oldest.start});
       }
@@ -87,7 +90,7 @@ void add_windows(const std::vector<Sequence>& sequences, std::map<std::string, S
   }
 }
 
-/// Every utterance, in as many windows as lost frames cut it into.
+/// Every utterance, in as many windows as its cuts make.
 void add_utterances(const std::vector<Sequence>& sequences, State& state) {
   for (std::size_t s = 0; s < sequences.size(); ++s) {
     const Eigen::Index end = sequences[s].frames;
@@ -96,7 +99,7 @@ void add_utterances(const std::vector<Sequence>& sequences, State& state) {
       if (stop > start) state.windows.push_back({s, start, stop - start});
       start = stop + 1;
     };
-    for (const auto lost : sequences[s].visual->lost)
+    for (const auto lost : sequences[s].cuts)
       if (lost < end) add_until(lost);
     add_until(end);
   }
@@ -120,12 +123,19 @@ void thin_out(State& state, Eigen::Index most) {
   state.windows = std::move(thinned);
 }
 
+Eigen::MatrixXd with_gaps(const Track& track, const Window& w) {
+  Eigen::MatrixXd values = track.values.middleRows(w.start, w.length);
+  for (Eigen::Index t = 0; t < w.length; ++t)
+    if (track.is_lost(w.start + t)) values.row(t).setConstant(std::numeric_limits<double>::quiet_NaN());
+  return values;
+}
+
 StateData cut(const State& state, const std::vector<Sequence>& sequences) {
   StateData data;
   data.label = state.label;
   for (const auto& w : state.windows) {
     data.audio.push_back(sequences[w.sequence].audio->values.middleRows(w.start, w.length));
-    data.visual.push_back(sequences[w.sequence].visual->values.middleRows(w.start, w.length));
+    data.visual.push_back(with_gaps(*sequences[w.sequence].visual, w));
   }
   return data;
 }
@@ -135,7 +145,7 @@ StateData cut(const State& state, const std::vector<Sequence>& sequences) {
 Stream<StateData> ContextWindows::operator()(const Vlmm& vlmm, const Collected<FrameLabels>& labels,
                                              const Collected<Track>& audio, const Collected<Track>& visual) const {
   const bool runs = states == StateKind::phones || !vlmm.repeating;
-  auto sequences = std::make_shared<const std::vector<Sequence>>(pair_up(labels, audio, visual, runs));
+  auto sequences = std::make_shared<const std::vector<Sequence>>(pair_up(labels, audio, visual, runs, gaps));
   auto by_label = states_of(vlmm, states);
   if (states == StateKind::one)
     add_utterances(*sequences, by_label[one_state]);
@@ -171,6 +181,8 @@ void describe(Description<ContextWindows>& d) {
   d.param("max_frames", &ContextWindows::max_frames)
       .at_least(1)
       .doc("most frames of a state; its windows are thinned out evenly");
+  d.param("gaps", &ContextWindows::gaps)
+      .doc("windows keep lost visual frames, as missing values for latent.mrd; else they have none");
 }
 
 }  // namespace talkgraph

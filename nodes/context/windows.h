@@ -13,7 +13,8 @@ namespace talkgraph {
 /// every stretch of the training streams that equals the label's phones,
 /// overlaps allowed; with phones as states, the runs of each phone; with one
 /// state, whole utterances (docs/method.md §5).
-/// A window with a lost visual frame is left out; an utterance is cut there.
+/// A window with a lost visual frame is left out, an utterance is cut there; or,
+/// with gaps, such frames stay as NaN.
 /// States with most frames come first. A state has windows of at most
 /// `max_frames` frames together, or one longer window; they are chosen evenly
 /// from all.
@@ -25,6 +26,7 @@ namespace talkgraph {
 struct ContextWindows {
   StateKind states = StateKind::contexts;
   int max_frames = 1000;
+  bool gaps = false;
 
   Stream<StateData> operator()(const Vlmm& vlmm, const Collected<FrameLabels>& labels, const Collected<Track>& audio,
                                const Collected<Track>& visual) const;

@@ -3,7 +3,6 @@
 #include "nodes/latent/gp_regression.h"
 #include "nodes/latent/gpdm.h"
 #include "nodes/latent/mrd.h"
-#include "nodes/latent/sequences.h"
 #include "nodes/latent/sgpdm.h"
 
 namespace talkgraph {
@@ -13,7 +12,6 @@ void register_latent(Registry& registry) {
   registry.add<PredictGp>();
   registry.add<TrainGpdm>();
   registry.add<TrainMrd>();
-  registry.add<Sequences>();
   registry.add<TrainSgpdm>();
 }
 

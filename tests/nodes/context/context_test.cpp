@@ -100,6 +100,18 @@ TEST(ContextWindows, LeaveOutLostFrames) {
   EXPECT_EQ(windows["b"], 1u);
   EXPECT_EQ(windows["b-a"], 0u);
   EXPECT_EQ(windows["a-b"], 1u);
+
+  ContextWindows with_gaps;
+  with_gaps.gaps = true;
+  states = with_gaps(v, labels, tracks, tracks);
+  while (auto state = states.next()) {
+    windows[state->key] = state->value.visual.size();
+    if (state->key != "b-a") continue;
+    EXPECT_TRUE(state->value.visual[0].row(0).array().isNaN().all());
+    EXPECT_TRUE(state->value.visual[0].row(1).allFinite() && state->value.audio[0].allFinite());
+  }
+  EXPECT_EQ(windows["b"], 2u);
+  EXPECT_EQ(windows["b-a"], 1u);
 }
 
 TEST(ContextTrain, FindsTheSmallAutomatonOfAnAlternation) {

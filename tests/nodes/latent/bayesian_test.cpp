@@ -262,7 +262,7 @@ TEST(LatentPosterior, OverTimeIsTheDenseGaussian) {
   q.set_zero(8, 1);
   const double divergence = latents.compute({0, 1}, free, log_precision, q.mean, q.variance);
   double expected = 0;
-  for (const auto [start, n] : {std::pair<Eigen::Index, Eigen::Index>{0, 3}, {3, 5}}) {
+  for (const auto& [start, n] : {std::pair<Eigen::Index, Eigen::Index>{0, 3}, {3, 5}}) {
     Eigen::MatrixXd k(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < n; ++j)

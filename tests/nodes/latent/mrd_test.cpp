@@ -10,7 +10,6 @@
 #include "nodes/latent/latent_dynamics.h"
 #include "nodes/latent/predictive.h"
 #include "nodes/latent/sequence_objective.h"
-#include "nodes/latent/sequences.h"
 #include "tests/nodes/latent/gaussian.h"
 
 namespace talkgraph {
@@ -245,25 +244,6 @@ TEST(FitDynamics, LearnsADecay) {
     EXPECT_NEAR(p.mean()(0), 0.16, 0.03);
     EXPECT_NEAR(std::sqrt(p.variance()[0]), 0.1, 0.03);
   }
-}
-
-TEST(Sequences, AreWindowsWithGapsWhereFramesAreLost) {
-  Collected<Track> audio, visual;
-  audio.add("a", std::make_shared<Track>(Track{gaussian(5, 2, 1)}));
-  audio.add("b", std::make_shared<Track>(Track{gaussian(4, 2, 2)}));
-  audio.add("c", std::make_shared<Track>(Track{gaussian(4, 2, 2)}));
-  Track track{gaussian(6, 3, 3)};
-  track.lost = {1, 5};
-  visual.add("a", std::make_shared<Track>(track));
-  visual.add("b", std::make_shared<Track>(Track{gaussian(4, 3, 4)}));
-  const StateData data = Sequences{}(audio, visual);
-  ASSERT_EQ(data.audio.size(), 2u);
-  EXPECT_EQ(data.visual[0].rows(), 5);
-  EXPECT_TRUE(data.visual[0].row(1).array().isNaN().all());
-  EXPECT_TRUE(data.visual[0].row(0).allFinite() && data.audio[0].allFinite() && data.visual[1].allFinite());
-  visual.add("c", std::make_shared<Track>(Track{gaussian(9, 3, 4)}));
-  EXPECT_THROW(Sequences{}(audio, visual), std::runtime_error);
-  EXPECT_THROW(Sequences{}(audio, {}), std::runtime_error);
 }
 
 }  // namespace
