@@ -30,8 +30,8 @@ const Eigen::MatrixXd& ExpectedRbf::compute(const ConstMatrix& mean, const Const
   return value_;
 }
 
-void ExpectedRbf::gradient(const ConstMatrix& g, const ConstMatrix& mean, const ConstMatrix& variance, MatrixView mean_gradient,
-                           MatrixView variance_gradient) {
+void ExpectedRbf::gradient(const ConstMatrix& g, const ConstMatrix& mean, const ConstMatrix& variance,
+                           MatrixView mean_gradient, MatrixView variance_gradient) {
   weighted_ = g.cwiseProduct(value_);
   row_gradient_.resize(rows_.rows(), rows_.cols());
   row_gradient_.noalias() = weighted_ * columns_;
@@ -39,8 +39,8 @@ void ExpectedRbf::gradient(const ConstMatrix& g, const ConstMatrix& mean, const 
   chain(mean, variance, mean_gradient, variance_gradient);
 }
 
-void ExpectedRbf::row_sum_gradient(const Eigen::VectorXd& g, const ConstMatrix& mean, const ConstMatrix& variance, MatrixView mean_gradient,
-                                   MatrixView variance_gradient) {
+void ExpectedRbf::row_sum_gradient(const Eigen::VectorXd& g, const ConstMatrix& mean, const ConstMatrix& variance,
+                                   MatrixView mean_gradient, MatrixView variance_gradient) {
   weighted_columns_ = columns_.array().colwise() * g.array();
   row_gradient_.resize(rows_.rows(), rows_.cols());
   row_gradient_.noalias() = value_ * weighted_columns_;
@@ -50,7 +50,8 @@ void ExpectedRbf::row_sum_gradient(const Eigen::VectorXd& g, const ConstMatrix& 
   chain(mean, variance, mean_gradient, variance_gradient);
 }
 
-void ExpectedRbf::chain(const ConstMatrix& mean, const ConstMatrix& variance, MatrixView mean_gradient, MatrixView variance_gradient) {
+void ExpectedRbf::chain(const ConstMatrix& mean, const ConstMatrix& variance, MatrixView mean_gradient,
+                        MatrixView variance_gradient) {
   const Eigen::Index d = mean.cols();
   const auto m = mean.array();
   const auto squares = row_gradient_.leftCols(d).array(), points = row_gradient_.middleCols(d, d).array();

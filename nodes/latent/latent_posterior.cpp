@@ -13,7 +13,8 @@ Eigen::MatrixXd covariance_over_time(Eigen::Index length, double width) {
   Eigen::MatrixXd k = Eigen::MatrixXd::Identity(length, length);
   for (Eigen::Index j = 0; j < length && width > 0; ++j)
     for (Eigen::Index i = 0; i < length; ++i)
-      if (const double lag = static_cast<double>(i - j) / width; i != j) k(i, j) = (1 - white) * std::exp(-0.5 * lag * lag);
+      if (const double lag = static_cast<double>(i - j) / width; i != j)
+        k(i, j) = (1 - white) * std::exp(-0.5 * lag * lag);
   return k;
 }
 

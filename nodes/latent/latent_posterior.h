@@ -25,8 +25,8 @@ class LatentPosterior {
                  const ConstMatrix& log_precision, Eigen::MatrixXd& mean, Eigen::MatrixXd& variance) const;
   /// Turns derivatives of a bound by mean and variance of the windows into those of bound − divergence by the free
   /// parameters, in place.
-  void gradient(const std::vector<std::size_t>& windows, const ConstMatrix& free_mean,
-                const ConstMatrix& log_precision, Eigen::MatrixXd& by_mean, Eigen::MatrixXd& by_variance) const;
+  void gradient(const std::vector<std::size_t>& windows, const ConstMatrix& free_mean, const ConstMatrix& log_precision,
+                Eigen::MatrixXd& by_mean, Eigen::MatrixXd& by_variance) const;
 
   std::size_t windows() const { return starts_.size(); }
   Eigen::Index start(std::size_t window) const { return starts_[window]; }

@@ -32,10 +32,10 @@ Frames frames_of(const StateData& data, OutputScaling audio_scaling, OutputScali
     const auto &y = data.audio[i], &z = data.visual[i];
     if (y.rows() != z.rows() || y.rows() == 0 || y.cols() != data.audio[0].cols() || y.cols() == 0 ||
         z.cols() != data.visual[0].cols() || z.cols() == 0)
-      throw std::runtime_error(
-          fmt::format("window {} is {} × {} of audio and {} × {} of visual features: both need as many frames, at least "
-                      "one, and the dimensions of window 0",
-                      i, y.rows(), y.cols(), z.rows(), z.cols()));
+      throw std::runtime_error(fmt::format(
+          "window {} is {} × {} of audio and {} × {} of visual features: both need as many frames, at least "
+          "one, and the dimensions of window 0",
+          i, y.rows(), y.cols(), z.rows(), z.cols()));
     frames.lengths.push_back(y.rows());
   }
   const auto stacked = [&](const std::vector<Eigen::MatrixXd>& windows) {
@@ -79,8 +79,9 @@ Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count) {
 }
 
 struct Relevance {
-  Eigen::VectorXd audio, visual;  ///< of the dimensions that stay, most relevant first
-  std::vector<Eigen::Index> kept;
+  std::vector<Eigen::Index> found;  ///< dimensions relevant to a stream, most relevant first
+  Eigen::VectorXd audio, visual;    ///< of those
+  std::vector<Eigen::Index> kept;   ///< that the model has
   int shared = 0, audio_only = 0, visual_only = 0;
 };
 
@@ -93,7 +94,7 @@ Eigen::VectorXd relevance_to(const VariationalStream& stream, const Eigen::Matri
 }
 
 Relevance relevance_of(const VariationalStream& audio, const VariationalStream& visual, const Eigen::MatrixXd& mean,
-                       double least) {
+                       double least, bool with_visual_only) {
   const Eigen::VectorXd a = relevance_to(audio, mean), v = relevance_to(visual, mean), sum = a + v;
   std::vector<Eigen::Index> order(static_cast<std::size_t>(sum.size()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
@@ -104,34 +105,50 @@ Relevance relevance_of(const VariationalStream& audio, const VariationalStream& 
     r.shared += heard && seen;
     r.audio_only += heard && !seen;
     r.visual_only += !heard && seen;
-    if (heard || seen || r.kept.empty()) r.kept.push_back(q);
+    if (heard || seen) r.found.push_back(q);
+    if (heard || (seen && with_visual_only)) r.kept.push_back(q);
   }
-  r.audio = a(r.kept);
-  r.visual = v(r.kept);
+  if (r.kept.empty()) r.kept.push_back(order[0]);
+  r.audio = a(r.found);
+  r.visual = v(r.found);
   return r;
 }
 
-/// The stream's process seen through the dimensions that stay.
-GaussianProcess process_of(const VariationalStream& stream, const GaussianRows& q,
-                           const std::vector<Eigen::Index>& kept) {
-  VariationalProcess reduced = stream.process();
-  reduced.inducing = reduced.inducing(Eigen::all, kept).eval();
-  reduced.kernel.inverse_widths = reduced.kernel.inverse_widths(kept).eval();
-  VariationalStream seen(stream.name(), stream.outputs(), reduced);
-  seen.begin(reduced.parameters());
-  GaussianProcess gp = seen.posterior({q.mean(Eigen::all, kept), q.variance(Eigen::all, kept)});
-  gp.kernel.terms = {ArdTerm{reduced.kernel.variance, reduced.kernel.inverse_widths}, BiasTerm{reduced.kernel.bias},
-                     WhiteTerm{reduced.noise, reduced.minimum_noise}};
+/// The process as a function of the dimensions kept, its mean and variance over others ~ N(0, 1).
+GaussianProcess averaged(GaussianProcess gp, const ArdKernel& kernel, const std::vector<Eigen::Index>& kept) {
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index q = 0; q < gp.basis.cols(); ++q)
+    if (std::find(kept.begin(), kept.end(), q) == kept.end()) others.push_back(q);
+  const auto count = static_cast<Eigen::Index>(others.size());
+  PsiStatistics psi;
+  psi.begin({1, 0, kernel.inverse_widths(others)}, gp.basis(Eigen::all, others));
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(1, count), one = Eigen::MatrixXd::Ones(1, count);
+  const Eigen::VectorXd factors = psi.first(zero, one).transpose();
+  Eigen::MatrixXd pairs = Eigen::MatrixXd::Zero(factors.size(), factors.size());
+  psi.add_second(zero, one, pairs);
+
+  const Eigen::MatrixXd spread = gp.weights * gp.weights.transpose() / static_cast<double>(gp.weights.cols());
+  gp.reduction = gp.reduction.cwiseProduct(pairs) - spread.cwiseProduct(pairs - factors * factors.transpose());
+  gp.mean.array() += gp.scale.array() * (kernel.bias * (1 - factors.array()).matrix().transpose() * gp.weights).array();
+  gp.weights = factors.asDiagonal() * gp.weights;
+  gp.basis = gp.basis(Eigen::all, kept).eval();
+  return gp;
+}
+
+GaussianProcess process_of(VariationalStream& stream, const GaussianRows& q, const std::vector<Eigen::Index>& kept) {
+  const VariationalProcess& p = stream.process();
+  GaussianProcess gp = averaged(stream.posterior(q), p.kernel, kept);
+  gp.kernel.terms = {ArdTerm{p.kernel.variance, p.kernel.inverse_widths(kept)}, BiasTerm{p.kernel.bias},
+                     WhiteTerm{p.noise, p.minimum_noise}};
   return gp;
 }
 
 Table relevance_table(const std::string& label, const Relevance& r, double least) {
-  Table table{fmt::format("Relevance of latent dimensions of state \"{}\"", label), "dimension",
-              {"audio", "visual"}, {}, {}};
+  Table table{
+      fmt::format("Relevance of latent dimensions of state \"{}\"", label), "dimension", {"audio", "visual"}, {}, {}};
   for (Eigen::Index i = 0; i < r.audio.size(); ++i) {
     const bool heard = r.audio[i] >= least, seen = r.visual[i] >= least;
-    table.rows.push_back(
-        fmt::format("{} ({})", i + 1, heard && seen ? "shared" : heard ? "audio" : seen ? "visual" : "neither"));
+    table.rows.push_back(fmt::format("{} ({})", i + 1, heard && seen ? "shared" : heard ? "audio" : "visual"));
     table.cells.push_back({r.audio[i], r.visual[i]});
   }
   return table;
@@ -206,8 +223,8 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
                           : batch > 0 ? train_in_parts(*this, objective, context, random)
                                       : train_whole(*this, objective, context);
   const GaussianRows q = objective.posterior(trained.parameters);
-  const auto &audio = objective.streams()[0], &visual = objective.streams()[1];
-  const Relevance r = relevance_of(audio, visual, q.mean, relevant);
+  auto &audio = objective.streams()[0], &visual = objective.streams()[1];
+  const Relevance r = relevance_of(audio, visual, q.mean, relevant, visual_only == VisualOnly::keep);
   const Eigen::Index n = objective.rows();
 
   Out out;
@@ -219,18 +236,20 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
   out.model.visual = process_of(visual, q, r.kept);
   if (dynamics && n > static_cast<Eigen::Index>(frames.lengths.size()))
     out.model.dynamics = fit_dynamics(out.model.latents, frames.lengths, dynamics_inverse_width, inducing, 20);
-  out.model.dynamics_bias =
-      dynamics_bias ? static_cast<double>(std::max(frames.audio.outputs(), frames.visual.outputs())) /
-                          static_cast<double>(out.model.latents.cols())
-                    : 1;
+  out.model.dynamics_bias = dynamics_bias
+                                ? static_cast<double>(std::max(frames.audio.outputs(), frames.visual.outputs())) /
+                                      static_cast<double>(out.model.latents.cols())
+                                : 1;
   out.model.first_variance = first_variance;
   out.model.log_likelihood = trained.bound;
   out.model.iterations = trained.iterations;
   out.model.jitter = objective.jitter();
 
   out.relevance = relevance_table(data.label, r, relevant);
-  out.dimensions = {"Latent dimensions found", "state",
-                    {"frames", "shared", "audio only", "visual only", "bound a frame"}, {data.label},
+  out.dimensions = {"Latent dimensions found",
+                    "state",
+                    {"frames", "shared", "audio only", "visual only", "bound a frame"},
+                    {data.label},
                     {{static_cast<double>(n), static_cast<double>(r.shared), static_cast<double>(r.audio_only),
                       static_cast<double>(r.visual_only), trained.bound / static_cast<double>(n)}}};
   context.log(fmt::format(
@@ -251,7 +270,7 @@ void describe(Description<TrainMrd>& d) {
   d.source("Titsias & Lawrence 2010; Damianou, Titsias & Lawrence 2011; Damianou, Ek, Titsias & Lawrence 2012");
   d.input("windows", "training windows of one state, NaN where a value is missing");
   d.output("model", &TrainMrd::Out::model, "audio and visual processes of one latent trajectory")
-      .output("relevance", &TrainMrd::Out::relevance, "of each dimension that stays, to audio and visual stream")
+      .output("relevance", &TrainMrd::Out::relevance, "of each dimension found, to audio and visual stream")
       .output("dimensions", &TrainMrd::Out::dimensions, "how many are shared, of audio only, of visual only");
   d.param("latent_dimension", &TrainMrd::latent_dimension)
       .at_least(1)
@@ -266,8 +285,9 @@ void describe(Description<TrainMrd>& d) {
       .doc("frames of a part in stochastic training; 0: all at once, by conjugate gradients");
   d.param("epochs", &TrainMrd::epochs)
       .at_least(0)
-      .doc("passes of stochastic training over all frames; of them a share noise_held / (noise_held + iterations) hold "
-           "the noise");
+      .doc(
+          "passes of stochastic training over all frames; of them a share noise_held / (noise_held + iterations) hold "
+          "the noise");
   d.param("time_width", &TrainMrd::time_width)
       .at_least(0)
       .doc("width in frames of a prior over time on each window's latent path; 0: none");
@@ -279,6 +299,8 @@ void describe(Description<TrainMrd>& d) {
   d.param("relevant", &TrainMrd::relevant)
       .within(0, 1)
       .doc("least relevance, as a share of the largest, of a dimension that a stream is said to need");
+  d.param("visual_only", &TrainMrd::visual_only)
+      .doc("dimensions of the visual stream only, which sound says nothing of: keep, or average over them");
   d.param("dynamics", &TrainMrd::dynamics).doc("off: none are learnt");
   d.param("dynamics_bias", &TrainMrd::dynamics_bias)
       .doc("the dynamics weigh larger dimension / latent dimension in synthesis");

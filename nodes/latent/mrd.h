@@ -10,13 +10,23 @@
 
 namespace talkgraph {
 
+enum class VisualOnly {
+  keep,    ///< the model has them: their values come from training frames and dynamics
+  average  ///< the visual process is averaged over them, N(0, 1) each
+};
+template <>
+inline constexpr EnumNames<VisualOnly, 2> enum_names<VisualOnly>{
+    {{VisualOnly::keep, "keep"}, {VisualOnly::average, "average"}}};
+
 /// Trains a state's latent model by variational inference, so that it finds its dimension and which dimensions audio
 /// and visual features share (docs/method.md §4): the Bayesian GPLVM (Titsias and Lawrence 2010) of two streams,
 /// manifold relevance determination (Damianou, Ek, Titsias and Lawrence 2012).
 ///
 /// A dimension's relevance to a stream is its inverse width times the variance of the latent means along it, as a
-/// share of the largest of that stream. Dimensions relevant to neither are left out of the model (one always stays);
-/// its latent points are the means of q(X), its kernels ARD + bias + white, its dynamics are learnt on the means.
+/// share of the largest of that stream. The model has those relevant to the audio stream (at least one) and, if
+/// wanted, those of the visual stream only; its processes are averaged over the others, N(0, 1) each: exactly as to the
+/// mean, but for the kernel's bias as to the variance. Its latent points are the means of q(X), its kernels ARD + bias
+/// + white, its dynamics are learnt on the means.
 ///
 /// NaN marks a missing value. Outputs that are missing in the same frames have their own inducing variables, so that
 /// each value that is there counts as it should and no other does; a frame with nothing in one stream has its latent
@@ -32,7 +42,7 @@ namespace talkgraph {
 struct TrainMrd {
   struct Out {
     Sgpdm model;
-    Table relevance;   ///< a row a dimension that stays: its relevance to audio and visual stream
+    Table relevance;   ///< a row a dimension found: its relevance to audio and visual stream
     Table dimensions;  ///< one row: frames, dimensions shared, of audio only, of visual only; bound a frame
   };
   int latent_dimension = 8;
@@ -47,6 +57,7 @@ struct TrainMrd {
   double noise = 0.1;
   double minimum_noise = 1e-3;
   double relevant = 0.05;
+  VisualOnly visual_only = VisualOnly::average;
   bool dynamics = true;
   bool dynamics_bias = true;
   double dynamics_inverse_width = 1;

@@ -94,7 +94,8 @@ class Training {
   std::vector<Eigen::Index> rows_of(const std::vector<std::size_t>& windows) const {
     std::vector<Eigen::Index> rows;
     for (const auto w : windows)
-      for (Eigen::Index t = 0; t < objective_.latents().length(w); ++t) rows.push_back(objective_.latents().start(w) + t);
+      for (Eigen::Index t = 0; t < objective_.latents().length(w); ++t)
+        rows.push_back(objective_.latents().start(w) + t);
     return rows;
   }
 

@@ -12,11 +12,11 @@ namespace talkgraph {
 /// the parameters of the processes and on the latent points of its own frames. A step costs as much for any number of
 /// frames in all; memory beyond parameters and data is that of a part.
 struct StochasticTraining {
-  int batch = 500;  ///< frames of a part, at least; windows stay whole
-  int epochs = 50;  ///< each takes every window once, in random order
-  int noise_held = 10;  ///< epochs before which noise stays where it is
-  double rate = 0.01;          ///< Adam's step of the processes, falling to a tenth
-  double latent_rate = 0.05;   ///< that of the latent points
+  int batch = 500;            ///< frames of a part, at least; windows stay whole
+  int epochs = 50;            ///< each takes every window once, in random order
+  int noise_held = 10;        ///< epochs before which noise stays where it is
+  double rate = 0.01;         ///< Adam's step of the processes, falling to a tenth
+  double latent_rate = 0.05;  ///< that of the latent points
   std::function<void(int epoch, double share, double bound)> on_part;
 
   /// From objective.start(): the parameters reached. The bound given to on_part is an estimate from the part.

@@ -13,8 +13,7 @@ Eigen::MatrixXd outputs_of(const Eigen::MatrixXd& all, const RowStatistics::Grou
 }
 
 double log_normaliser(const RowStatistics::Group& group, const InducingVariables& u) {
-  return -0.5 * group.rows * static_cast<double>(group.outputs.size()) *
-         std::log(2 * std::numbers::pi / u.precision());
+  return -0.5 * group.rows * static_cast<double>(group.outputs.size()) * std::log(2 * std::numbers::pi / u.precision());
 }
 
 void begin(BoundGradient& g, const InducingVariables& u, const RowStatistics& rows) {

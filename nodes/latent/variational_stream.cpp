@@ -54,7 +54,7 @@ void VariationalStream::begin(const Eigen::Ref<const Eigen::VectorXd>& parameter
 
 template <class F>
 void VariationalStream::each_part(const Classes& classes, const GaussianRows& q, F f) {
-  constexpr Eigen::Index values = 1 << 18;  // of Ψ2 of single rows at a time
+  constexpr Eigen::Index values = 1 << 20;  // of Ψ2 of single rows at a time
   const Eigen::Index m = process_.inducing.rows();
   const Eigen::Index most = std::max<Eigen::Index>(1, 2 * values / (m * (m + 1)));
   for (const auto& c : classes) {

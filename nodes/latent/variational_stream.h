@@ -49,7 +49,7 @@ class VariationalStream {
   /// Classes of some of the rows, which are in rising order.
   std::vector<ObservedOutputs::Class> classes_of(const std::vector<Eigen::Index>& rows) const;
 
-  /// Takes new parameters. Throws FactorisationError.
+  /// Takes new parameters; comes before each evaluation. Throws FactorisationError.
   void begin(const Eigen::Ref<const Eigen::VectorXd>& parameters);
   /// Bound of all rows with the best inducing variables; derivatives are added to `rows` and assigned to `parameters`.
   double collapsed(const GaussianRows& q, GaussianRows* rows, VectorView parameters);

@@ -171,29 +171,29 @@ TEST(CollapsedBound, OfMissingValuesIsThatOfEachOutputsOwnRows) {
     std::vector<Eigen::Index> there;
     for (Eigen::Index n = 0; n < 9; ++n)
       if (!std::isnan(y(n, c))) there.push_back(n);
-    expected += collapsed_bound(y(there, std::vector{c}), {q.mean(there, Eigen::all), q.variance(there, Eigen::all)},
-                                process);
+    expected +=
+        collapsed_bound(y(there, std::vector{c}), {q.mean(there, Eigen::all), q.variance(there, Eigen::all)}, process);
   }
   EXPECT_NEAR(collapsed_bound(y, q, process), expected, 1e-9);
 }
 
 TEST(CollapsedBound, TakesRowsInPartsOfAnySize) {
-  const VariationalProcess process = process_of(100, 2, 1);  // parts of 51 rows
-  const Eigen::MatrixXd y = gaussian(200, 3, 2);
-  GaussianRows q = rows_of(200, 2, 5);
+  const VariationalProcess process = process_of(100, 2, 1);  // parts of 207 rows
+  const Eigen::MatrixXd y = gaussian(300, 3, 2);
+  GaussianRows q = rows_of(300, 2, 5);
   VariationalStream stream = stream_of(y, process);
   const Eigen::VectorXd start = process.parameters();
   Cost cost(4, [&](const Eigen::VectorXd& p, Eigen::VectorXd* g) {
     q.mean(3, 0) = p[0];
-    q.variance(199, 1) = p[1];
+    q.variance(299, 1) = p[1];
     Eigen::VectorXd at = start;
     at.head(2) = p.tail(2);
     stream.begin(at);
     GaussianRows by;
-    by.set_zero(200, 2);
+    by.set_zero(300, 2);
     Eigen::VectorXd by_parameters(start.size());
     const double value = stream.collapsed(q, g ? &by : nullptr, by_parameters);
-    if (g) *g = Eigen::Vector4d(by.mean(3, 0), by.variance(199, 1), by_parameters[0], by_parameters[1]);
+    if (g) *g = Eigen::Vector4d(by.mean(3, 0), by.variance(299, 1), by_parameters[0], by_parameters[1]);
     return value;
   });
   EXPECT_LT(check_gradient(cost, Eigen::Vector4d(0.1, 0.5, start[0], start[1]), 1e-3).worst, 1e-6);
@@ -212,11 +212,12 @@ TEST(StochasticBound, WithTheBestInducingVariablesIsTheCollapsedOne) {
     by_collapsed.set_zero(9, 2);
     Eigen::VectorXd g(stream.size()), g_collapsed(stream.size());
     const double best = stream.collapsed(q, &by_collapsed, g_collapsed);
+    stream.begin(process.parameters());
     EXPECT_NEAR(stream.stochastic(stream.outputs().classes, 1, 1, q, by, g), best, 1e-8);
     // There the derivative by the inducing variables is nought, so that the others agree.
-    EXPECT_TRUE(g.isApprox(g_collapsed, 1e-5));
-    EXPECT_TRUE(by.mean.isApprox(by_collapsed.mean, 1e-5));
-    EXPECT_TRUE(by.variance.isApprox(by_collapsed.variance, 1e-5));
+    EXPECT_TRUE(g.isApprox(g_collapsed, 1e-6));
+    EXPECT_TRUE(by.mean.isApprox(by_collapsed.mean, 1e-9));
+    EXPECT_TRUE(by.variance.isApprox(by_collapsed.variance, 1e-9));
     stream.begin(0.9 * process.parameters());
     const double other = stream.stochastic(stream.outputs().classes, 1, 0, q, by, g);
     EXPECT_LT(other, stream.collapsed(q, nullptr, g));
@@ -235,8 +236,7 @@ TEST(StochasticBound, GradientsAgreeWithDifferences) {
   stream.stochastic(stream.outputs().classes, 1, 0.7, rows_of(9, 2, 5), by, unused);
   const auto classes = stream.classes_of({0, 1, 4, 7});
   Cost cost(stream.size() + 36, [&](const Eigen::VectorXd& p, Eigen::VectorXd* g) {
-    const GaussianRows q{p.segment(stream.size(), 18).reshaped(9, 2),
-                         p.tail(18).array().exp().matrix().reshaped(9, 2)};
+    const GaussianRows q{p.segment(stream.size(), 18).reshaped(9, 2), p.tail(18).array().exp().matrix().reshaped(9, 2)};
     stream.begin(p.head(stream.size()));
     by.set_zero(9, 2);
     Eigen::VectorXd by_process(stream.size());
@@ -286,7 +286,7 @@ struct Setting {
 };
 
 BayesianObjective small_objective(const Setting& setting) {
-  const Eigen::Index n = 9, d = 2;
+  const Eigen::Index n = 8, d = 2;
   std::vector<VariationalStream> streams;
   for (int s = 0; s < setting.streams; ++s) {
     Eigen::MatrixXd y = gaussian(n, 3 + s, 10 + static_cast<std::uint64_t>(s));
@@ -295,9 +295,9 @@ BayesianObjective small_objective(const Setting& setting) {
       y(5, 1) = y(7, 1) = y(7, 2) = nan;
     }
     streams.emplace_back("stream", observed_outputs(y, OutputScaling::per_dimension, "stream"),
-                         process_of(4, d, 20 + static_cast<std::uint64_t>(s)));
+                         process_of(3, d, 20 + static_cast<std::uint64_t>(s)));
   }
-  return {LatentPosterior({4, 1, 4}, setting.width), std::move(streams), gaussian(n, d, 30), 0.5};
+  return {LatentPosterior({3, 1, 4}, setting.width), std::move(streams), gaussian(n, d, 30), 0.5};
 }
 
 TEST(BayesianObjective, GradientsAgreeWithDifferences) {
@@ -332,7 +332,9 @@ double exact_evidence(const Eigen::MatrixXd& y, const VariationalProcess& p) {
 TEST(BayesianObjective, IsBelowTheEvidenceAndNearIt) {
   Eigen::MatrixXd y(2, 2);
   y << 0.9, -0.4, -0.9, 0.4;
-  const VariationalProcess process = process_of(6, 1, 3);
+  VariationalProcess process = process_of(6, 1, 3);
+  process.noise = 0.5;
+  process.kernel.inverse_widths[0] = 0.3;
   std::vector<VariationalStream> streams;
   streams.push_back(stream_of(y, process));
   BayesianObjective objective(LatentPosterior({1, 1}, 0), std::move(streams), gaussian(2, 1, 4), 0.5);
@@ -355,7 +357,7 @@ TEST(BayesianObjective, IsBelowTheEvidenceAndNearIt) {
   optimiser.iterations = 200;
   const double reached = -optimiser.minimise(held, p).cost;
   EXPECT_LT(reached, evidence);
-  EXPECT_GT(reached, evidence - 0.3);
+  EXPECT_GT(reached, evidence - 0.5);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace talkgraph {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using testing::gaussian;
+using ::testing::HasSubstr;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -54,8 +54,11 @@ std::string failure(const StateData& data) {
 
 TEST(TrainMrd, FindsSharedAndPrivateDimensions) {
   for (std::uint64_t seed = 100; seed < 103; ++seed) {
-    const auto out = trained({}, shared_and_private(100, seed));
-    EXPECT_THAT(out.dimensions.cells[0], ::testing::Contains(100.0));
+    TrainMrd node;
+    node.iterations = 200;
+    node.visual_only = VisualOnly::keep;
+    const auto out = trained(node, shared_and_private(120, seed));
+    EXPECT_EQ(out.dimensions.cells[0][0], 120);
     EXPECT_EQ(out.dimensions.cells[0][1], 1) << "shared, seed " << seed;
     EXPECT_EQ(out.dimensions.cells[0][2], 1) << "audio, seed " << seed;
     EXPECT_EQ(out.dimensions.cells[0][3], 1) << "visual, seed " << seed;
@@ -109,7 +112,8 @@ TEST(TrainMrd, RecoversMissingValues) {
 
 TEST(TrainMrd, FillsLostFramesFromTheirNeighboursInTime) {
   Eigen::MatrixXd x(60, 2);
-  for (Eigen::Index t = 0; t < 60; ++t) x.row(t) << std::sin(0.15 * static_cast<double>(t)), std::cos(0.1 * static_cast<double>(t));
+  for (Eigen::Index t = 0; t < 60; ++t)
+    x.row(t) << std::sin(0.15 * static_cast<double>(t)), std::cos(0.1 * static_cast<double>(t));
   x *= 1.5;
   StateData data{"a", {drawn(x, 12, 4)}, {drawn(x, 10, 6)}};
   const Eigen::MatrixXd truth = data.visual[0];
@@ -228,10 +232,38 @@ TEST(TrainMrd, ModelsServeSynthesis) {
   node.iterations = 30;
   const Sgpdm model = trained(node, shared_and_private(60, 2)).model;
   ASSERT_TRUE(model.dynamics);
-  SequenceObjective objective(model, model.audio_frames.topRows(5), true);
+  const Eigen::MatrixXd audio = model.audio_frames.topRows(5);
+  SequenceObjective objective(model, audio, true);
   const auto check = check_gradient(objective, model.latents.topRows(5).reshaped());
   EXPECT_TRUE(check.evaluated && check.cost_consistent);
   EXPECT_LT(check.worst, 1e-6);
+}
+
+TEST(TrainMrd, AveragesOverWhatOnlyTheFaceShows) {
+  const StateData data = shared_and_private(80, 3);
+  TrainMrd node;
+  node.visual_only = VisualOnly::keep;
+  const auto whole = trained(node, data);
+  node.visual_only = VisualOnly::average;
+  const auto part = trained(node, data);
+  ASSERT_GT(whole.dimensions.cells[0][3], 0);
+  ASSERT_LT(part.model.latents.cols(), whole.model.latents.cols());
+  EXPECT_EQ(part.relevance.cells, whole.relevance.cells);
+
+  // Where the dimensions that are left stand in the whole model, in the same order.
+  const Eigen::Index d = whole.model.latents.cols(), draws = 20000;
+  Eigen::MatrixXd x = gaussian(draws, d, 9);
+  for (Eigen::Index q = 0, at = 0; q < d; ++q)
+    if (whole.relevance.cells[static_cast<std::size_t>(q)][0] >= node.relevant)
+      x.col(q).setConstant(part.model.latents(7, at++));
+  Predictive all, mean;
+  all.compute(whole.model.visual, x);
+  mean.compute(part.model.visual, part.model.latents.row(7));
+  const Eigen::RowVectorXd expected = unscaled(whole.model.visual, all.mean()).colwise().mean();
+  EXPECT_LT((unscaled(part.model.visual, mean.mean()) - expected).norm(), 0.02 * whole.model.visual.scale.norm());
+  const Eigen::MatrixXd around = all.mean().rowwise() - all.mean().colwise().mean();
+  const double variance = all.variance().mean() + around.squaredNorm() / static_cast<double>(around.size());
+  EXPECT_NEAR(mean.variance()[0], variance, 0.05 * variance);
 }
 
 TEST(FitDynamics, LearnsADecay) {
