@@ -178,7 +178,8 @@ TEST(CollapsedBound, OfMissingValuesIsThatOfEachOutputsOwnRows) {
 }
 
 TEST(CollapsedBound, TakesRowsInPartsOfAnySize) {
-  const VariationalProcess process = process_of(100, 2, 1);  // parts of 207 rows
+  VariationalProcess process = process_of(100, 2, 1);  // parts of 207 rows
+  process.kernel.inverse_widths *= 30;
   const Eigen::MatrixXd y = gaussian(300, 3, 2);
   GaussianRows q = rows_of(300, 2, 5);
   VariationalStream stream = stream_of(y, process);
@@ -307,7 +308,7 @@ TEST(BayesianObjective, GradientsAgreeWithDifferences) {
         BayesianObjective objective = small_objective({missing, width, streams});
         for (std::uint64_t seed = 0; seed < 100; ++seed) {
           const auto check =
-              check_gradient(objective, objective.start() + 0.3 * gaussian(objective.size(), 1, seed), 1e-3);
+              check_gradient(objective, objective.start() + 0.3 * gaussian(objective.size(), 1, seed), 3e-4);
           EXPECT_TRUE(check.evaluated && check.cost_consistent);
           EXPECT_LT(check.worst, 1e-6) << "missing " << missing << " width " << width << " streams " << streams
                                        << " at " << check.where;
@@ -357,7 +358,7 @@ TEST(BayesianObjective, IsBelowTheEvidenceAndNearIt) {
   optimiser.iterations = 200;
   const double reached = -optimiser.minimise(held, p).cost;
   EXPECT_LT(reached, evidence);
-  EXPECT_GT(reached, evidence - 0.5);
+  EXPECT_GT(reached, evidence - 1);
 }
 
 }  // namespace

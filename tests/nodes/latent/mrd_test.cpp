@@ -267,14 +267,15 @@ TEST(TrainMrd, AveragesOverWhatOnlyTheFaceShows) {
 }
 
 TEST(FitDynamics, LearnsADecay) {
-  Eigen::MatrixXd x = gaussian(200, 1, 1);
-  for (Eigen::Index t = 1; t < 200; ++t) x(t, 0) = 0.8 * x(t - 1, 0) + 0.1 * x(t, 0);
-  for (const int inducing : {20, 500}) {
-    const GaussianProcess h = fit_dynamics(x, {100, 100}, 1, inducing, 30);
+  Eigen::MatrixXd x = gaussian(600, 1, 1);
+  x(0, 0) = 0;
+  for (Eigen::Index t = 1; t < 600; ++t) x(t, 0) = 0.8 * x(t - 1, 0) + 0.1 * x(t, 0);
+  for (const int inducing : {20, 1000}) {
+    const GaussianProcess h = fit_dynamics(x, {300, 300}, 1, inducing, 30);
     Predictive p;
     p.compute(h, Eigen::MatrixXd::Constant(1, 1, 0.2));
-    EXPECT_NEAR(p.mean()(0), 0.16, 0.03);
-    EXPECT_NEAR(std::sqrt(p.variance()[0]), 0.1, 0.03);
+    EXPECT_NEAR(p.mean()(0), 0.16, 0.04);
+    EXPECT_NEAR(std::sqrt(p.variance()[0]), 0.1, 0.02);
   }
 }
 
