@@ -159,10 +159,11 @@ struct Trained {
   double bound = 0;
   int iterations = 0;
   std::string end;
+  std::vector<double> trace;
 };
 
 Trained train_whole(const TrainMrd& node, BayesianObjective& objective, Context& context) {
-  Trained trained{objective.start(), 0, 0, ""};
+  Trained trained{objective.start(), 0, 0, "", {}};
   ScaledConjugateGradients optimiser;
   const int all = node.noise_held + node.iterations;
   for (const bool hold : {true, false}) {
@@ -175,6 +176,7 @@ Trained train_whole(const TrainMrd& node, BayesianObjective& objective, Context&
     const OptimiserReport report = optimiser.minimise(objective, trained.parameters);
     trained.iterations += report.iterations;
     trained.end = str(report.reason);
+    for (std::size_t i = hold ? 0 : 1; i < report.trace.size(); ++i) trained.trace.push_back(-report.trace[i]);
   }
   trained.bound = objective.bound(trained.parameters, nullptr);
   return trained;
@@ -185,17 +187,19 @@ Trained train_in_parts(const TrainMrd& node, BayesianObjective& objective, Conte
   training.batch = node.batch;
   training.epochs = node.epochs;
   training.noise_held = node.epochs * node.noise_held / std::max(1, node.noise_held + node.iterations);
-  training.on_part = [&](int, double share, double) {
+  Trained trained{{}, 0, node.epochs, "epochs", {}};
+  training.on_part = [&](int, double share, double bound) {
     context.check_cancelled();
     context.progress(share);
+    trained.trace.push_back(bound);
   };
-  Trained trained{training(objective, random), 0, node.epochs, "epochs"};
+  trained.parameters = training(objective, random);
   trained.bound = objective.bound(trained.parameters, nullptr);
   return trained;
 }
 
 Trained untrained(BayesianObjective& objective) {
-  return {objective.start(), objective.bound(objective.start(), nullptr), 0, "nothing varies"};
+  return {objective.start(), objective.bound(objective.start(), nullptr), 0, "nothing varies", {}};
 }
 
 BayesianObjective objective_of(const TrainMrd& node, const Frames& frames) {
@@ -243,6 +247,7 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
   out.model.first_variance = first_variance;
   out.model.log_likelihood = trained.bound;
   out.model.iterations = trained.iterations;
+  out.model.trace = trained.trace;
   out.model.jitter = objective.jitter();
 
   out.relevance = relevance_table(data.label, r, relevant);
