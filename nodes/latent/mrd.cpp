@@ -154,6 +154,16 @@ Table relevance_table(const std::string& label, const Relevance& r, double least
   return table;
 }
 
+Table dimensions_table(const std::string& label, const Relevance& r, Eigen::Index frames, double bound) {
+  const double n = static_cast<double>(frames);
+  return {"Latent dimensions found",
+          "state",
+          {"frames", "shared", "audio only", "visual only", "bound a frame"},
+          {label},
+          {{n, static_cast<double>(r.shared), static_cast<double>(r.audio_only), static_cast<double>(r.visual_only),
+            bound / n}}};
+}
+
 struct Trained {
   Eigen::VectorXd parameters;
   double bound = 0;
@@ -240,10 +250,9 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
   out.model.visual = process_of(visual, q, r.kept);
   if (dynamics && n > static_cast<Eigen::Index>(frames.lengths.size()))
     out.model.dynamics = fit_dynamics(out.model.latents, frames.lengths, dynamics_inverse_width, inducing, 20);
-  out.model.dynamics_bias = dynamics_bias
-                                ? static_cast<double>(std::max(frames.audio.outputs(), frames.visual.outputs())) /
-                                      static_cast<double>(out.model.latents.cols())
-                                : 1;
+  if (dynamics_bias)
+    out.model.dynamics_bias = static_cast<double>(std::max(frames.audio.outputs(), frames.visual.outputs())) /
+                              static_cast<double>(out.model.latents.cols());
   out.model.first_variance = first_variance;
   out.model.log_likelihood = trained.bound;
   out.model.iterations = trained.iterations;
@@ -251,12 +260,7 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
   out.model.jitter = objective.jitter();
 
   out.relevance = relevance_table(data.label, r, relevant);
-  out.dimensions = {"Latent dimensions found",
-                    "state",
-                    {"frames", "shared", "audio only", "visual only", "bound a frame"},
-                    {data.label},
-                    {{static_cast<double>(n), static_cast<double>(r.shared), static_cast<double>(r.audio_only),
-                      static_cast<double>(r.visual_only), trained.bound / static_cast<double>(n)}}};
+  out.dimensions = dimensions_table(data.label, r, n, trained.bound);
   context.log(fmt::format(
       "state \"{}\": {} frames in {} windows, bound {:.1f} after {} iterations ({}); of {} dimensions {} shared, {} of "
       "audio, {} of visual only; relevance to audio {:.2f}, to visual {:.2f}",
