@@ -42,7 +42,7 @@ TrainGp trainer(CovarianceApproximation approximation) {
 
 TEST(GpRegression, LearnsASmoothFunctionByEveryApproximation) {
   const Pairs pairs(5, 40, 0);
-  const auto sound = gaussian(200, 2, 7) * 0.8;
+  const Eigen::MatrixXd sound = 0.8 * gaussian(200, 2, 7);
   Context context;
   for (const auto& [approximation, name] :
        std::map<CovarianceApproximation, std::string>{{CovarianceApproximation::full, "full"},
