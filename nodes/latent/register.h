@@ -4,7 +4,7 @@
 
 namespace talkgraph {
 
-/// Adds the node types of this family: latent.gpdm, latent.mrd, latent.sgpdm.
+/// Adds the node types of this family: latent.gp, latent.gp_predict, latent.gpdm, latent.mrd, latent.sgpdm.
 void register_latent(Registry& registry);
 
 }  // namespace talkgraph
