@@ -1,51 +1,9 @@
 #include "nodes/latent/gpdm.h"
 
-#include <fmt/format.h>
-
-#include <stdexcept>
-
 #include "nodes/latent/linear_models.h"
+#include "nodes/latent/sequences.h"
 
 namespace talkgraph {
-
-namespace {
-
-struct Sequences {
-  Eigen::MatrixXd frames;
-  std::vector<std::int64_t> lengths;
-};
-
-Sequences measured(const Collected<Track>& tracks) {
-  Sequences s;
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const Track& track = tracks[i];
-    if (track.frames() == 0) continue;
-    if (s.frames.rows() > 0 && track.dimension() != s.frames.cols())
-      throw std::runtime_error(
-          fmt::format("track \"{}\" has {} dimensions, those before it {}: train all on the same "
-                      "features",
-                      tracks.key(i), track.dimension(), s.frames.cols()));
-    if (!track.values.allFinite())
-      throw std::runtime_error("track \"" + tracks.key(i) + "\" has a value that is not finite");
-    bool goes_on = false;
-    for (Eigen::Index t = 0; t < track.frames(); ++t) {
-      const bool lost = track.is_lost(t);
-      if (!lost && goes_on) ++s.lengths.back();
-      if (!lost && !goes_on) s.lengths.push_back(1);
-      goes_on = !lost;
-    }
-    const Eigen::Index had = s.frames.rows(), lost = static_cast<Eigen::Index>(track.lost.size());
-    s.frames.conservativeResize(had + track.frames() - lost, track.dimension());
-    Eigen::Index row = had;
-    for (Eigen::Index t = 0; t < track.frames(); ++t)
-      if (!track.is_lost(t)) s.frames.row(row++) = track.values.row(t);
-  }
-  if (s.frames.rows() == 0 || s.frames.cols() == 0)
-    throw std::runtime_error("the tracks have no measured frame to train on");
-  return s;
-}
-
-}  // namespace
 
 TrainGpdm::TrainGpdm() {
   latent_dimension = 2;
@@ -56,7 +14,7 @@ TrainGpdm::TrainGpdm() {
 }
 
 Gpdm TrainGpdm::operator()(const Collected<Track>& tracks, Context& context) const {
-  Sequences data = measured(tracks);
+  Sequences data = measured_runs(tracks);
   const auto start = [](const std::vector<Eigen::MatrixXd>& scaled, Eigen::Index d) {
     return fit_ppca(scaled[0], d).posterior_mean(scaled[0]);
   };

@@ -1,7 +1,11 @@
 #include "nodes/latent/register.h"
 
+#include "nodes/latent/gmm.h"
 #include "nodes/latent/gp_regression.h"
 #include "nodes/latent/gpdm.h"
+#include "nodes/latent/hmm.h"
+#include "nodes/latent/lds.h"
+#include "nodes/latent/linear_models.h"
 #include "nodes/latent/mrd.h"
 #include "nodes/latent/sgpdm.h"
 
@@ -13,6 +17,14 @@ void register_latent(Registry& registry) {
   registry.add<TrainGpdm>();
   registry.add<TrainMrd>();
   registry.add<TrainSgpdm>();
+  registry.add<TrainPpca>();
+  registry.add<ProjectPpca>();
+  registry.add<TrainGmm>();
+  registry.add<GmmResponsibilities>();
+  registry.add<TrainHmm>();
+  registry.add<DecodeHmm>();
+  registry.add<TrainLds>();
+  registry.add<SmoothLds>();
 }
 
 }  // namespace talkgraph

@@ -3,6 +3,8 @@
 
 #include "nodes/types/audio.h"
 #include "nodes/types/face_track.h"
+#include "nodes/types/hmm.h"
+#include "nodes/types/lds.h"
 #include "nodes/types/phones.h"
 #include "nodes/types/recording.h"
 #include "nodes/types/report.h"
@@ -121,6 +123,36 @@ void fields(Archive& ar, SegmentTrack& s) {
   ar("segments", s.segments);
   ar("frames", s.frames);
   ar("rate", s.rate, "Hz");
+}
+
+void fields(Archive& ar, GaussianMixture& m) {
+  ar("weights", m.weights);
+  ar("means", m.means);
+  ar("covariances", m.covariances);
+}
+
+void fields(Archive& ar, Gmm& g) {
+  ar("mixture", g.mixture);
+  ar("trace", g.trace);
+}
+
+void fields(Archive& ar, Hmm& h) {
+  ar("start", h.start);
+  ar("transitions", h.transitions);
+  ar("observations", h.observations);
+  ar("trace", h.trace);
+}
+
+void fields(Archive& ar, Lds& l) {
+  ar("first_mean", l.first_mean);
+  ar("first_covariance", l.first_covariance);
+  ar("prediction", l.prediction);
+  ar("offset", l.offset);
+  ar("prediction_noise", l.prediction_noise);
+  ar("mean", l.mean);
+  ar("observation", l.observation);
+  ar("observation_noise", l.observation_noise);
+  ar("trace", l.trace);
 }
 
 void fields(Archive& ar, StateData& s) {

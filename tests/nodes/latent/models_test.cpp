@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 
 #include "nodes/latent/linear_models.h"
 #include "tests/nodes/latent/gaussian.h"
@@ -45,6 +46,86 @@ TEST(Pcca, PosteriorMeanIsThatOfTheJointGaussian) {
   EXPECT_TRUE(model.posterior_mean(y, z).isApprox(both * joint.inverse() * loadings, 1e-6));
 }
 
+TEST(Pcca, PosteriorsAndDensityAreThoseOfTheJointGaussian) {
+  const Eigen::Index n = 300;
+  const auto x = gaussian(n, 2, 1);
+  const Eigen::MatrixXd y = x * gaussian(2, 4, 2) + gaussian(n, 4, 4), z = x * gaussian(2, 3, 3) + gaussian(n, 3, 5);
+  const Pcca model = fit_pcca(y, z, 2, 0);
+  Eigen::MatrixXd joint(7, 7), loadings(7, 2);
+  loadings << model.loadings_y, model.loadings_z;
+  joint << model.covariance_y, model.loadings_y * model.loadings_z.transpose(),
+      model.loadings_z * model.loadings_y.transpose(), model.covariance_z;
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(2, 2);
+  const Eigen::MatrixXd both = identity - loadings.transpose() * joint.inverse() * loadings;
+  EXPECT_TRUE(both.isApprox(Eigen::MatrixXd(model.posterior_variance().asDiagonal()), 1e-9));
+  const auto gain = [](const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& w) -> Eigen::MatrixXd {
+    return covariance.inverse() * w;
+  };
+  const Eigen::MatrixXd gain_y = gain(model.covariance_y, model.loadings_y);
+  EXPECT_TRUE(model.posterior_mean_of_y(y).isApprox((y.rowwise() - model.mean_y) * gain_y, 1e-9));
+  EXPECT_TRUE(model.posterior_mean_of_z(z).isApprox(
+      (z.rowwise() - model.mean_z) * gain(model.covariance_z, model.loadings_z), 1e-9));
+  EXPECT_TRUE((identity - model.loadings_y.transpose() * gain_y)
+                  .isApprox(Eigen::MatrixXd(model.posterior_variance_of_one().asDiagonal()), 1e-9));
+
+  const Eigen::VectorXd log_likelihood = model.log_likelihood(y, z);
+  Eigen::VectorXd row(7), mean(7);
+  mean << model.mean_y.transpose(), model.mean_z.transpose();
+  for (Eigen::Index i = 0; i < n; i += 50) {
+    row << y.row(i).transpose(), z.row(i).transpose();
+    EXPECT_NEAR(log_likelihood(i), testing::log_normal_density(row, mean, joint), 1e-9);
+  }
+  EXPECT_THROW(fit_pcca(y, y, 1, 0).log_likelihood(y, y), std::runtime_error);
+}
+
+TEST(Pcca, IsLikelierThanOtherModelsOfItsForm) {
+  const Eigen::Index n = 400;
+  const auto x = gaussian(n, 1, 1);
+  const Eigen::MatrixXd y = x * gaussian(1, 3, 2) + gaussian(n, 3, 4), z = x * gaussian(1, 2, 3) + gaussian(n, 2, 5);
+  const Pcca best = fit_pcca(y, z, 1, 0);
+  const double reached = best.log_likelihood(y, z).sum();
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Pcca other = best;
+    other.loadings_y += 0.02 * gaussian(3, 1, 100 + seed);
+    other.loadings_z += 0.02 * gaussian(2, 1, 200 + seed);
+    other.covariance_y *= 1 + 0.01 * gaussian(1, 1, 300 + seed)(0);
+    EXPECT_LT(other.log_likelihood(y, z).sum(), reached);
+  }
+}
+
+TEST(Cca, DirectionsAreNormedUncorrelatedAndOfGreatestCorrelation) {
+  const Eigen::Index n = 500;
+  const auto x = gaussian(n, 2, 1);
+  const Eigen::MatrixXd y = x * gaussian(2, 5, 2) + gaussian(n, 5, 4), z = x * gaussian(2, 3, 3) + gaussian(n, 3, 5);
+  const Cca model = fit_cca(y, z, 3);
+  const Eigen::MatrixXd a = y.rowwise() - model.mean_y, b = z.rowwise() - model.mean_z;
+  const Eigen::MatrixXd u = a * model.directions_y, v = b * model.directions_z;
+  EXPECT_TRUE((u.transpose() * u).isIdentity(1e-10));
+  EXPECT_TRUE((v.transpose() * v).isIdentity(1e-10));
+  EXPECT_TRUE((u.transpose() * v).isApprox(Eigen::MatrixXd(model.correlations.asDiagonal()), 1e-10));
+  const Eigen::MatrixXd map =
+      (a.transpose() * a).inverse() * (a.transpose() * b) * (b.transpose() * b).inverse() * (b.transpose() * a);
+  const Eigen::VectorXd squares = map.eigenvalues().real();
+  EXPECT_NEAR(model.correlations(0), std::sqrt(squares.maxCoeff()), 1e-10);
+  EXPECT_TRUE(fit_pcca(y, z, 3, 0).correlations.isApprox(model.correlations, 1e-6));
+}
+
+TEST(Cca, AnswersDegenerateData) {
+  Eigen::MatrixXd y = gaussian(4, 8, 1), z = gaussian(4, 6, 2);
+  y.col(3).setConstant(7);
+  const Cca few = fit_cca(y, z, 5);
+  EXPECT_TRUE(few.correlations.head(3).isOnes(1e-9));
+  EXPECT_TRUE(few.correlations.tail(2).isZero());
+  EXPECT_TRUE(few.directions_y.allFinite());
+  EXPECT_NEAR(((y.rowwise() - few.mean_y) * few.directions_y.col(0)).norm(), 1, 1e-9);
+  EXPECT_TRUE(fit_cca(y.topRows(1), z.topRows(1), 2).directions_y.isZero());
+  EXPECT_TRUE(fit_cca(Eigen::MatrixXd::Constant(5, 2, 3.3), gaussian(5, 2, 1), 2).correlations.isZero());
+  y(2, 2) = NAN;
+  EXPECT_THROW(fit_cca(y, z, 1), std::runtime_error);
+  EXPECT_THROW(fit_pcca(z, y, 1), std::runtime_error);
+  EXPECT_THROW(fit_cca(y.topRows(3), z, 1), std::runtime_error);
+}
+
 TEST(Pcca, StaysFiniteOnDegenerateData) {
   for (const Eigen::Index n : {1, 2, 5}) {
     Eigen::MatrixXd y = gaussian(n, 8, 1), z = gaussian(n, 6, 2);
@@ -66,6 +147,47 @@ TEST(Ppca, RecoversSubspaceAndNoise) {
   EXPECT_TRUE((model.loadings * model.loadings.transpose()).isApprox(w.transpose() * w, 0.05));
   EXPECT_TRUE(fit_ppca(y.topRows(1), 3).posterior_mean(y.topRows(1)).isZero(1e-9));
   EXPECT_TRUE(fit_ppca(y.topRows(3), 9).posterior_mean(y.topRows(3)).allFinite());
+}
+
+TEST(Ppca, DensityAndPosteriorAreThoseOfTheDenseGaussian) {
+  const Eigen::MatrixXd y = gaussian(60, 2, 1) * gaussian(2, 5, 2) + 0.3 * gaussian(60, 5, 3);
+  for (const Eigen::Index d : {1, 2, 5, 7}) {
+    const Ppca model = fit_ppca(y, d);
+    const Eigen::MatrixXd covariance =
+        model.loadings * model.loadings.transpose() + model.noise * Eigen::MatrixXd::Identity(5, 5);
+    const Eigen::VectorXd log_likelihood = model.log_likelihood(y);
+    for (Eigen::Index i = 0; i < 60; i += 10)
+      EXPECT_NEAR(log_likelihood(i), testing::log_normal_density(y.row(i), model.mean, covariance), 1e-9);
+    EXPECT_TRUE(model.posterior_covariance().isApprox(
+        Eigen::MatrixXd::Identity(d, d) - model.loadings.transpose() * covariance.inverse() * model.loadings, 1e-9));
+  }
+}
+
+TEST(Ppca, IsLikelierThanItsNeighbours) {
+  const Eigen::MatrixXd y = gaussian(200, 2, 1) * gaussian(2, 5, 2) + 0.5 * gaussian(200, 5, 3);
+  const Ppca best = fit_ppca(y, 2);
+  const double reached = best.log_likelihood(y).sum();
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Ppca other = best;
+    other.loadings += 0.02 * gaussian(5, 2, 100 + seed);
+    other.noise *= 1 + 0.02 * gaussian(1, 1, 200 + seed)(0);
+    EXPECT_LT(other.log_likelihood(y).sum(), reached);
+  }
+}
+
+TEST(ProjectPpca, GivesPosteriorMeansOfATrack) {
+  Context context;
+  Track track{gaussian(30, 4, 1), Rational{30}, 0.5, {}, {3}};
+  const Ppca model = TrainPpca{2}({{"a", track}}, context);
+  const Track latents = ProjectPpca{}(model, track);
+  EXPECT_EQ(latents.values, model.posterior_mean(track.values));
+  EXPECT_EQ(latents.start, 0.5);
+  EXPECT_EQ(latents.lost, track.lost);
+  track.values(2, 1) = NAN;
+  EXPECT_THROW(ProjectPpca{}(model, track), std::runtime_error);
+  EXPECT_THROW(TrainPpca{2}({{"a", track}}, context), std::runtime_error);
+  EXPECT_THROW(ProjectPpca{}(model, {gaussian(3, 3, 1)}), std::runtime_error);
+  EXPECT_THROW(TrainPpca{2}({}, context), std::runtime_error);
 }
 
 }  // namespace

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "graph/context.h"
+
+namespace talkgraph {
+
+/// When expectation maximisation ends.
+struct EmLimits {
+  int iterations;
+  double tolerance;  ///< of what the log-likelihood gains in an iteration, a frame
+};
+
+/// Expectation maximisation. `expect` gives the log-likelihood under the model as it is, and keeps what `maximise`
+/// makes the next model of. Gives the log-likelihood at the start and after each iteration; the last is that of the
+/// model. `subject` ("GMM of 8 components") stands in the log.
+template <class Expect, class Maximise>
+std::vector<double> run_em(const EmLimits& limits, Eigen::Index frames, const std::string& subject, Context& context,
+                           Expect expect, Maximise maximise) {
+  std::vector<double> trace{expect()};
+  bool settled = false;
+  for (int i = 0; i < limits.iterations && !settled; ++i) {
+    context.check_cancelled();
+    maximise();
+    trace.push_back(expect());
+    if (!std::isfinite(trace.back()))
+      throw std::runtime_error(
+          fmt::format("{}: the log-likelihood is {} after {} iterations: are values of the features huge?", subject,
+                      trace.back(), i + 1));
+    settled = trace.back() - trace[trace.size() - 2] <= limits.tolerance * static_cast<double>(frames);
+    context.progress(static_cast<double>(i + 1) / limits.iterations);
+  }
+  context.log(fmt::format("{}, {} frames: log-likelihood {:.8g}, {:.5g} a frame, after {} iterations{}", subject,
+                          frames, trace.back(), trace.back() / static_cast<double>(frames), trace.size() - 1,
+                          settled ? "" : ", not converged"));
+  return trace;
+}
+
+}  // namespace talkgraph

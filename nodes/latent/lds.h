@@ -1,0 +1,58 @@
+#pragma once
+
+#include "graph/context.h"
+#include "graph/description.h"
+#include "nodes/latent/normal.h"
+#include "nodes/latent/sequences.h"
+#include "nodes/types/lds.h"
+
+namespace talkgraph {
+
+/// What is known of the states of one sequence.
+struct LdsPosterior {
+  Eigen::MatrixXd means;                     ///< T × d
+  std::vector<Eigen::MatrixXd> covariances;  ///< T of d × d
+  std::vector<Eigen::MatrixXd> lagged;       ///< Cov(x_t, x_{t−1}) for t = 2..T; empty of a filter
+  double log_likelihood = 0;                 ///< ln p(observed frames)
+};
+/// Kalman filter: states given the frames up to theirs. Frames in `lost`, in order, are not observed. T ≥ 1.
+/// Covariances are products of roots, so that they stay positive semidefinite whatever the noise. Throws
+/// std::runtime_error if a noise covariance of the model is not positive definite.
+LdsPosterior kalman_filter(const Lds& model, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost = {});
+/// States given all frames (Rauch, Tung and Striebel 1965).
+LdsPosterior kalman_smoother(const Lds& model, const Eigen::MatrixXd& frames,
+                             const std::vector<std::int64_t>& lost = {});
+/// The frames that states (T × d) give without noise, T × D.
+Eigen::MatrixXd observations(const Lds& model, const Eigen::MatrixXd& states);
+
+/// A linear dynamical system of tracks, every run of measured frames a sequence. Throws std::runtime_error, naming the
+/// track, if none has a measured frame, on different dimensions and on values that are not finite.
+struct TrainLds {
+  int latent_dimension = 4;
+  CovarianceKind covariance = CovarianceKind::full;
+  double floor = 1e-3;
+  double state_floor = 1e-6;
+  int iterations = 100;
+  double tolerance = 1e-5;
+
+  Lds operator()(const Collected<Track>& tracks, Context& context) const;
+  /// By expectation maximisation. It starts from PPCA of the frames, each stacked with those before it if there are
+  /// more state than observed dimensions; `mean` is that of the frames and stays. Of one-frame sequences alone no
+  /// dynamics are learnt: A and ν are 0 and Σ is I.
+  Lds fit(const Sequences& data, Context& context) const;
+};
+void describe(Description<TrainLds>& d);
+
+/// The states of a track and the frames that they give. Lost frames count as not observed, and stay marked.
+struct SmoothLds {
+  bool smooth = true;
+
+  struct Out {
+    Track states;  ///< means, T × d
+    Track track;   ///< T × D
+  };
+  Out operator()(const Lds& model, const Track& track, Context& context) const;
+};
+void describe(Description<SmoothLds>& d);
+
+}  // namespace talkgraph
