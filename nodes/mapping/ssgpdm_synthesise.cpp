@@ -136,7 +136,11 @@ SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Tr
   check(model, audio, segments);
   const Eigen::Index frames = std::min<Eigen::Index>(audio.frames(), segments.frames);
   const Eigen::Index dimension = model.states.begin()->second.visual.mean.size();
-  Out out{track_like(audio, frames, dimension), track_like(audio, frames, dimension)};
+  Eigen::Index d = 0;
+  for (const auto& [label, state] : model.states) d = std::max(d, state.latents.cols());
+  Out out{track_like(audio, frames, dimension), track_like(audio, frames, dimension), track_like(audio, frames, d), {}};
+  out.states.frames = frames;
+  out.states.rate = segments.rate;
   Predictive visual;
   for (const auto& segment : segments.segments) {
     const Eigen::Index length = std::min<Eigen::Index>(segment.length, frames - segment.start);
@@ -147,7 +151,10 @@ SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Tr
     Boundary before;
     if (segment.start > 0) before = scaled(state.visual, out.visual.values.row(segment.start - 1));
     const Eigen::MatrixXd scaled_audio = scaled(state.audio, heard);
-    visual.compute(state.visual, segment_latents(*this, state, scaled_audio, before));
+    const Eigen::MatrixXd x = segment_latents(*this, state, scaled_audio, before);
+    out.latents.values.block(segment.start, 0, length, x.cols()) = x;
+    out.states.segments.push_back({state.label, segment.start, length});
+    visual.compute(state.visual, x);
     out.visual.values.middleRows(segment.start, length) = unscaled(state.visual, visual.mean());
     out.deviation.values.middleRows(segment.start, length) = visual.variance().cwiseSqrt() * state.visual.scale;
     context.progress(static_cast<double>(segment.start + length) / static_cast<double>(frames));
@@ -156,7 +163,7 @@ SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Tr
 }
 
 void describe(Description<SynthesiseSsgpdm>& d) {
-  d.type("mapping.ssgpdm_synthesise").version(2);
+  d.type("mapping.ssgpdm_synthesise").version(3);
   d.summary("visual features of new speech by a switching SGPDM").stored();
   d.source("Thesis §4.4, §5.3, Eqns 4.76-4.79, Algorithms 7 and 8, corrected as in docs/method.md §5");
   d.input("model", "the switching model")
@@ -164,6 +171,8 @@ void describe(Description<SynthesiseSsgpdm>& d) {
       .input("segments", "states of the speech");
   d.output("visual", &SynthesiseSsgpdm::Out::visual, "mean of the visual process");
   d.output("deviation", &SynthesiseSsgpdm::Out::deviation, "predictive standard deviation of every value");
+  d.output("latents", &SynthesiseSsgpdm::Out::latents, "the latent points found");
+  d.output("states", &SynthesiseSsgpdm::Out::states, "the segments, with the labels of the states that answered");
   d.param("method", &SynthesiseSsgpdm::method)
       .doc("optimise: Algorithm 7; predict: Algorithm 8; initial: nearest neighbours only");
   d.param("initial", &SynthesiseSsgpdm::initial)

@@ -42,8 +42,10 @@ inline constexpr EnumNames<LatentInitial, 4> enum_names<LatentInitial>{
 /// not finite, or if a state lacks the back-constraint to start from. No frames give no frames.
 struct SynthesiseSsgpdm {
   struct Out {
-    Track visual;     ///< T × D_Z, rate and start of the audio
-    Track deviation;  ///< predictive standard deviation given the latent points, T × D_Z
+    Track visual;         ///< T × D_Z, rate and start of the audio
+    Track deviation;      ///< predictive standard deviation given the latent points, T × D_Z
+    Track latents;        ///< those points, T × the largest d; a state of fewer dimensions leaves the last at 0
+    SegmentTrack states;  ///< the segments with the labels of the states that answered
   };
   LatentSearch method = LatentSearch::optimise;
   LatentInitial initial = LatentInitial::window;

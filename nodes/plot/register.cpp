@@ -2,7 +2,9 @@
 
 #include "nodes/plot/bars.h"
 #include "nodes/plot/columns.h"
+#include "nodes/plot/convergence.h"
 #include "nodes/plot/curves.h"
+#include "nodes/plot/latent.h"
 #include "nodes/plot/mean_trajectory.h"
 #include "nodes/plot/phone_means.h"
 #include "nodes/plot/tracks.h"
@@ -15,7 +17,9 @@ void register_plot(Registry& registry) {
   registry.add<PhoneMeans>();
   registry.add<PlotBars>();
   registry.add<PlotColumns>();
+  registry.add<PlotConvergence>();
   registry.add<PlotCurves>();
+  registry.add<PlotLatent>();
   registry.add<PlotTracks>();
   registry.add<PlotTrajectories>();
 }

@@ -3,36 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "nodes/plot/axis.h"
+#include "nodes/plot/marks.h"
 
 namespace talkgraph {
 namespace {
 
 constexpr double kLeft = 54, kRight = 14, kTop = 28, kBottom = 42, kLegend = 28;
 constexpr double kBarHeight = 24, kCharacter = 6.3, kValue = 56;
-// Okabe and Ito: told apart by people with any colour vision.
-constexpr std::array<const char*, 7> kColours = {"#222222", "#d55e00", "#0072b2", "#009e73",
-                                                 "#cc79a7", "#e69f00", "#56b4e9"};
-
-std::string open_svg(const std::string& title, double width, double height) {
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"11\" fill=\"#222\" role=\"img\">\n<title>{2}</title>\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-      width, height, escape_markup(title));
-}
-
-std::string text_at(double x, double y, const char* anchor, const std::string& text, const char* more = "") {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
-                     escape_markup(text));
-}
-
-std::string line(const std::string& path, const char* colour, double width = 1) {
-  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n", path, colour, width);
-}
 
 /// Of the whisker at a point, or 0.
 double spread_at(const Series& s, std::size_t i) {
@@ -93,19 +73,19 @@ std::string band_of(const Series& s, const Axis& x, const Axis& y, double w, dou
 }
 
 std::string draw_axes(const Panel& panel, const Axis& x, const Axis& y, double w, double h) {
-  std::string out = text_at(w / 2, -10, "middle", panel.title, " font-weight=\"bold\"");
+  std::string out = svg_text(w / 2, -10, "middle", panel.title, " font-weight=\"bold\"");
   for (const double v : y.ticks()) {
     const double at = h - y.share(v) * h;
-    out += line(fmt::format("M0 {:.1f}h{:.1f}", at, w), tick_text(y, v) == "0" ? "#bbb" : "#e4e4e4");
-    out += text_at(-7, at + 4, "end", tick_text(y, v));
+    out += svg_line(fmt::format("M0 {:.1f}h{:.1f}", at, w), tick_text(y, v) == "0" ? "#bbb" : "#e4e4e4");
+    out += svg_text(-7, at + 4, "end", tick_text(y, v));
   }
   for (const double v : x.ticks()) {
-    out += line(fmt::format("M{:.1f} {:.1f}v4", x.share(v) * w, h), "#888");
-    out += text_at(x.share(v) * w, h + 16, "middle", tick_text(x, v));
+    out += svg_line(fmt::format("M{:.1f} {:.1f}v4", x.share(v) * w, h), "#888");
+    out += svg_text(x.share(v) * w, h + 16, "middle", tick_text(x, v));
   }
-  out += line(fmt::format("M0 0V{:.1f}H{:.1f}", h, w), "#888");
-  out += text_at(w / 2, h + 33, "middle", panel.x_label);
-  return out + text_at(-h / 2, -42, "middle", panel.y_label, " transform=\"rotate(-90)\"");
+  out += svg_line(fmt::format("M0 0V{:.1f}H{:.1f}", h, w), "#888");
+  out += svg_text(w / 2, h + 33, "middle", panel.x_label);
+  return out + svg_text(-h / 2, -42, "middle", panel.y_label, " transform=\"rotate(-90)\"");
 }
 
 std::string draw_panel(const Panel& panel, const Layout& layout) {
@@ -114,14 +94,14 @@ std::string draw_panel(const Panel& panel, const Layout& layout) {
   const Axis y = y_axis(panel, std::max(2, static_cast<int>(h / 35)));
   std::string out = draw_axes(panel, x, y, w, h);
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
-    const char* colour = kColours[i % kColours.size()];
+    const char* colour = plot_colours[i % plot_colours.size()];
     if (panel.series[i].band)
       out += fmt::format("<path d=\"{}\" fill=\"{}\" fill-opacity=\"0.12\"/>\n", band_of(panel.series[i], x, y, w, h),
                          colour);
-    out += line(path_of(panel.series[i], x, y, w, h), colour, 1.6);
+    if (panel.series[i].stroke) out += svg_line(path_of(panel.series[i], x, y, w, h), colour, 1.6);
     if (panel.series[i].band) continue;
     if (const auto whiskers = whiskers_of(panel.series[i], x, y, w, h); !whiskers.empty())
-      out += line(whiskers, colour);
+      out += svg_line(whiskers, colour);
   }
   return out;
 }
@@ -133,14 +113,11 @@ std::string draw_legend(const std::vector<Panel>& panels) {
                                      [](const Panel& a, const Panel& b) { return a.series.size() < b.series.size(); });
   for (std::size_t i = 0; i < most->series.size(); ++i) {
     const auto& name = most->series[i].name;
-    out += line(fmt::format("M{:.1f} 14h22", x), kColours[i % kColours.size()], 3) + text_at(x + 28, 18, "start", name);
+    out += svg_line(fmt::format("M{:.1f} 14h22", x), plot_colours[i % plot_colours.size()], 3) +
+           svg_text(x + 28, 18, "start", name);
     x += 46 + kCharacter * static_cast<double>(name.size());
   }
   return out;
-}
-
-std::string moved(double x, double y, const std::string& content) {
-  return fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n", x, y, content);
 }
 
 double longest_name(const std::vector<BarPanel>& panels) {
@@ -163,26 +140,27 @@ Axis axis_of(const BarPanel& panel) {
 
 std::string draw_bar(const Bar& bar, const Axis& axis, double w, double y) {
   const double middle = y + kBarHeight / 2;
-  std::string out = text_at(-8, middle + 4, "end", bar.name);
-  if (!std::isfinite(bar.value)) return out + text_at(axis.share(0) * w + 6, middle + 4, "start", "no value");
+  std::string out = svg_text(-8, middle + 4, "end", bar.name);
+  if (!std::isfinite(bar.value)) return out + svg_text(axis.share(0) * w + 6, middle + 4, "start", "no value");
   const double from = axis.share(std::min(0.0, bar.value)) * w, to = axis.share(std::max(0.0, bar.value)) * w;
   out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", from, y + 4,
-                     to - from, kBarHeight - 8, kColours[2]);
+                     to - from, kBarHeight - 8, plot_colours[2]);
   if (std::isfinite(bar.spread) && bar.spread > 0)
-    out += line(
+    out += svg_line(
         fmt::format("M{0:.1f} {2:.1f}H{1:.1f}M{0:.1f} {3:.1f}v6M{1:.1f} {3:.1f}v6",
                     axis.share(bar.value - bar.spread) * w, axis.share(bar.value + bar.spread) * w, middle, middle - 3),
-        kColours[0]);
-  return out + text_at(w + kValue - 4, middle + 4, "end", fmt::format("{:.3g}", bar.value));
+        plot_colours[0]);
+  return out + svg_text(w + kValue - 4, middle + 4, "end", fmt::format("{:.3g}", bar.value));
 }
 
 std::string draw_bar_panel(const BarPanel& panel, double w) {
   const Axis axis = axis_of(panel);
   const double h = kBarHeight * static_cast<double>(panel.bars.size());
-  std::string out = text_at(w / 2, -10, "middle", panel.title, " font-weight=\"bold\"");
+  std::string out = svg_text(w / 2, -10, "middle", panel.title, " font-weight=\"bold\"");
   for (const double v : axis.ticks()) {
-    out += line(fmt::format("M{:.1f} 0v{:.1f}", axis.share(v) * w, h), tick_text(axis, v) == "0" ? "#888" : "#e4e4e4");
-    out += text_at(axis.share(v) * w, h + 16, "middle", tick_text(axis, v));
+    out +=
+        svg_line(fmt::format("M{:.1f} 0v{:.1f}", axis.share(v) * w, h), tick_text(axis, v) == "0" ? "#888" : "#e4e4e4");
+    out += svg_text(axis.share(v) * w, h + 16, "middle", tick_text(axis, v));
   }
   double y = 0;
   for (const auto& bar : panel.bars) {
@@ -217,11 +195,11 @@ std::string escape_markup(const std::string& text) {
 
 std::string draw_panels(const std::string& title, const std::vector<Panel>& panels, const Layout& layout) {
   const int n = static_cast<int>(panels.size()), columns = std::clamp(layout.columns, 1, std::max(n, 1));
-  std::string out = open_svg(title, columns * layout.width, kLegend + (n + columns - 1) / columns * layout.height);
+  std::string out = svg_open(title, columns * layout.width, kLegend + (n + columns - 1) / columns * layout.height);
   if (n > 0) out += draw_legend(panels);
   for (int i = 0; i < n; ++i)
-    out += moved(i % columns * layout.width + kLeft, kLegend + i / columns * layout.height + kTop,
-                 draw_panel(panels[static_cast<std::size_t>(i)], layout));
+    out += svg_group(i % columns * layout.width + kLeft, kLegend + i / columns * layout.height + kTop,
+                     draw_panel(panels[static_cast<std::size_t>(i)], layout));
   return out + "</svg>\n";
 }
 
@@ -233,10 +211,10 @@ std::string draw_bars(const std::string& title, const std::vector<BarPanel>& pan
   std::size_t most = 0;
   for (const auto& panel : panels) most = std::max(most, panel.bars.size());
   const double height = kTop + kBarHeight * static_cast<double>(most) + kBottom;
-  std::string out = open_svg(title, columns * width, (n + columns - 1) / columns * height);
+  std::string out = svg_open(title, columns * width, (n + columns - 1) / columns * height);
   for (int i = 0; i < n; ++i)
-    out += moved(i % columns * width + names, i / columns * height + kTop,
-                 draw_bar_panel(panels[static_cast<std::size_t>(i)], w));
+    out += svg_group(i % columns * width + names, i / columns * height + kTop,
+                     draw_bar_panel(panels[static_cast<std::size_t>(i)], w));
   return out + "</svg>\n";
 }
 

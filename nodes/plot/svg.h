@@ -11,6 +11,7 @@ struct Series {
   std::vector<double> x, y;
   std::vector<double> spread = {};  ///< whiskers of ± this at each point; empty or NaN: none
   bool band = false;                ///< the spread as a band, not as whiskers
+  bool stroke = true;               ///< the line itself is drawn
 };
 
 /// A pair of axes with its lines.

@@ -18,9 +18,10 @@ struct Gpdm {
   double log_likelihood = 0;                      ///< training objective reached, natural logarithm
   double jitter = 0;                              ///< largest share of the mean variance added to a factorised matrix
   std::vector<double> trace;                      ///< the objective at the start and after each iteration
+  std::string ended;                              ///< why training stopped: "converged", "iteration limit" ...
 };
 template <>
-inline constexpr PortType port_type<Gpdm>{"Gpdm", 1};
+inline constexpr PortType port_type<Gpdm>{"Gpdm", 2};
 void fields(Archive& ar, Gpdm& g);
 
 }  // namespace talkgraph

@@ -174,6 +174,7 @@ void fields(Archive& ar, Sgpdm& s) {
   ar("iterations", s.iterations);
   ar("jitter", s.jitter);
   ar("trace", s.trace);
+  ar("ended", s.ended);
 }
 
 void fields(Archive& ar, Gpdm& g) {
@@ -190,6 +191,7 @@ void fields(Archive& ar, Gpdm& g) {
   ar("log_likelihood", g.log_likelihood);
   ar("jitter", g.jitter);
   ar("trace", g.trace);
+  ar("ended", g.ended);
 }
 
 void fields(Archive& ar, Ssgpdm& s) {

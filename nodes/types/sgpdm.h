@@ -101,9 +101,10 @@ struct Sgpdm {
   std::int64_t iterations = 0;                    ///< of the optimiser
   double jitter = 0;                              ///< largest share of the mean variance added to a factorised matrix
   std::vector<double> trace;                      ///< the objective at the start and after each iteration
+  std::string ended;                              ///< why training stopped: "converged", "iteration limit" ...
 };
 template <>
-inline constexpr PortType port_type<Sgpdm>{"Sgpdm", 2};
+inline constexpr PortType port_type<Sgpdm>{"Sgpdm", 3};
 void fields(Archive& ar, Sgpdm& s);
 
 }  // namespace talkgraph

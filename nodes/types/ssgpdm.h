@@ -15,7 +15,7 @@ struct Ssgpdm {
   std::map<std::string, std::string> ending;  ///< phone -> the state with most frames that ends in it
 };
 template <>
-inline constexpr PortType port_type<Ssgpdm>{"Ssgpdm", 3};
+inline constexpr PortType port_type<Ssgpdm>{"Ssgpdm", 4};
 void fields(Archive& ar, Ssgpdm& s);
 
 }  // namespace talkgraph

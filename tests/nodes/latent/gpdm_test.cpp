@@ -55,6 +55,8 @@ TEST(TrainGpdm, StepsDoNotLeadOverLostFrames) {
   train.iterations = 10;
   const Gpdm model = train({{"a", track}}, context);
   EXPECT_EQ(model.lengths, (std::vector<std::int64_t>{6, 10}));
+  EXPECT_EQ(model.trace.size(), 11u);
+  EXPECT_EQ(model.ended, "iteration limit");
   EXPECT_LT(model.observations.scale.maxCoeff(), 10);
 }
 

@@ -92,6 +92,7 @@ TEST(TrainSgpdm, FitsWithEverySetting) {
     EXPECT_LT(unexplained(model, data), 0.12) << name;
     EXPECT_TRUE(std::is_sorted(model.trace.begin(), model.trace.end())) << name;
     EXPECT_EQ(model.trace.back(), model.log_likelihood) << name;
+    EXPECT_TRUE(model.ended == "converged" || model.ended == "iteration limit") << name << ": " << model.ended;
     EXPECT_EQ(model.dynamics.has_value(), name != "no dynamics");
     ASSERT_EQ(model.back_constraint.has_value(), name == "mlp" || name == "kbr");
     if (model.back_constraint) {
