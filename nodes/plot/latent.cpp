@@ -267,9 +267,10 @@ void describe(Description<PlotLatent>& d) {
   d.type("plot.latent").version(1).summary("latent points of a model, coloured by what is said, before its precision");
   d.source("Thesis §4.2.5 and §4.3.4, Figures 4.6 and 4.10");
   d.input("model", "an Ssgpdm, of which one state is shown, an Sgpdm or a Gpdm")
-      .input("labels", "phones or visemes of the frames trained on; a state of a switching model has its own")
-      .input("paths", "synthesised latent points, drawn over them: latents of mapping.ssgpdm_synthesise")
-      .input("states", "whose segments the paths are: states of mapping.ssgpdm_synthesise")
+      .input("labels",
+             "phones or visemes of the frames trained on; {} for a state of a switching model, which has its own")
+      .input("paths", "synthesised latent points, drawn over them: latents of mapping.ssgpdm_synthesise, or {}")
+      .input("states", "whose segments the paths are: states of mapping.ssgpdm_synthesise, or {}")
       .output("plot", "one panel");
   d.param("state", &PlotLatent::state).doc("label of the state; empty: the one with most frames");
   d.param("process", &PlotLatent::process)

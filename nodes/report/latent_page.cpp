@@ -195,9 +195,10 @@ void describe(Description<LatentPage>& d) {
   d.summary("writes a page to turn and zoom a model's latent space in, in three dimensions");
   d.source("Thesis §5.2.3, Figures 5.9 to 5.12");
   d.input("model", "an Ssgpdm, of which one state is shown, an Sgpdm or a Gpdm")
-      .input("labels", "phones or visemes of the frames trained on; a state of a switching model has its own")
-      .input("paths", "synthesised latent points, drawn as well: latents of mapping.ssgpdm_synthesise")
-      .input("states", "whose segments the paths are: states of mapping.ssgpdm_synthesise")
+      .input("labels",
+             "phones or visemes of the frames trained on; {} for a state of a switching model, which has its own")
+      .input("paths", "synthesised latent points, drawn as well: latents of mapping.ssgpdm_synthesise, or {}")
+      .input("states", "whose segments the paths are: states of mapping.ssgpdm_synthesise, or {}")
       .output("file", "the page");
   d.param("state", &LatentPage::state).doc("label of the state; empty: the one with most frames");
   d.param("process", &LatentPage::process)

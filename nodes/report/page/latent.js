@@ -38,9 +38,9 @@ const spot = (() => {
   const sprite = document.createElement("canvas");
   sprite.width = sprite.height = 64;
   const paint = sprite.getContext("2d"), fade = paint.createRadialGradient(32, 32, 0, 32, 32, 32);
-  fade.addColorStop(0, "rgba(70,84,110,1)");
-  fade.addColorStop(0.5, "rgba(70,84,110,0.45)");
-  fade.addColorStop(1, "rgba(70,84,110,0)");
+  fade.addColorStop(0, "rgba(60,60,60,1)");
+  fade.addColorStop(0.5, "rgba(60,60,60,0.45)");
+  fade.addColorStop(1, "rgba(60,60,60,0)");
   paint.fillStyle = fade;
   paint.fillRect(0, 0, 64, 64);
   return sprite;
@@ -52,10 +52,10 @@ const spot = (() => {
 function camera() {
   const { width, height } = canvas.getBoundingClientRect();
   const [st, ct, si, ci] = [Math.sin(view.turn), Math.cos(view.turn), Math.sin(view.tilt), Math.cos(view.tilt)];
-  const size = 0.33 * Math.min(width, height) * view.zoom;
+  const size = 0.31 * Math.min(width, height) * view.zoom;
   return ([x, y, z]) => {
     const across = ct * x - st * y, away = st * x + ct * y;
-    const depth = ci * away - si * z, near = 4 / (4 + depth);
+    const depth = ci * away - si * z, near = 6 / (6 + depth);
     return { x: width / 2 + size * near * across, y: height / 2 - size * near * (ci * z + si * away), depth, size: near };
   };
 }
@@ -112,7 +112,7 @@ function draw_box(project) {
 
 function draw_cloud(project) {
   const strength = 0.24 * Number($("density").value) ** 2;
-  const width = 2 * 2.4 / data.resolution * 0.33 * Math.min(canvas.clientWidth, canvas.clientHeight) * view.zoom;
+  const width = 2 * 2.4 / data.resolution * 0.31 * Math.min(canvas.clientWidth, canvas.clientHeight) * view.zoom;
   for (const { place, share } of cloud) {
     const alpha = strength * share ** 3;
     if (alpha < 0.002) continue;
