@@ -257,6 +257,7 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
   out.model.log_likelihood = trained.bound;
   out.model.iterations = trained.iterations;
   out.model.trace = trained.trace;
+  out.model.ended = trained.end;
   out.model.jitter = objective.jitter();
 
   out.relevance = relevance_table(data.label, r, relevant);
@@ -274,7 +275,7 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
 }
 
 void describe(Description<TrainMrd>& d) {
-  d.type("latent.mrd").version(1).stored();
+  d.type("latent.mrd").version(2).stored();
   d.summary("trains a state's shared latent model, finding its dimension and what each stream needs of it");
   d.source("Titsias & Lawrence 2010; Damianou, Titsias & Lawrence 2011; Damianou, Ek, Titsias & Lawrence 2012");
   d.input("windows", "training windows of one state, NaN where a value is missing");

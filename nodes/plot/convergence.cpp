@@ -115,7 +115,7 @@ PlotConvergence::Out PlotConvergence::operator()(const Value& model) const {
     out.plot.svg = draw_panels(title, panel_each(all, y_label));
   else
     out.plot.svg =
-        draw_panels(title, {panel_of_many(std::move(all), static_cast<std::size_t>(worst), y_label)}, {1, 640, 360});
+        draw_panels(title, {panel_of_many(std::move(all), static_cast<std::size_t>(worst), y_label)}, {1, 860, 380});
   return out;
 }
 

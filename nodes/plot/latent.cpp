@@ -92,8 +92,8 @@ class Drawing {
 
   std::string panel() const { return background() + axes() + bar() + trajectories() + dots() + paths() + legend(); }
   double height() const {
-    const double entries = static_cast<double>(p_.phones.names.size()) + 3;
-    return std::max(h_, entries * kLegendStep);
+    const double entries = static_cast<double>(p_.phones.names.size()) + 2;
+    return std::max(h_ + kBottom, entries * kLegendStep + 12);
   }
 
  private:
@@ -251,7 +251,7 @@ LatentPicture latent_picture(const PlotLatent& node, const LatentSpace& space, c
 std::string draw_latent(const std::string& title, const LatentPicture& picture) {
   const Drawing drawing(picture);
   const double width = kLeft + kWidth + kLegendLeft + legend_width(picture);
-  return svg_open(title, width, kTop + drawing.height() + kBottom) +
+  return svg_open(title, width, kTop + drawing.height()) +
          svg_text(kLeft, 22, "start", title, " font-weight=\"bold\" font-size=\"13\"") +
          svg_group(kLeft, kTop, drawing.panel()) + "</svg>\n";
 }

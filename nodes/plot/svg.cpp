@@ -112,10 +112,12 @@ std::string draw_legend(const std::vector<Panel>& panels) {
   const auto most = std::max_element(panels.begin(), panels.end(),
                                      [](const Panel& a, const Panel& b) { return a.series.size() < b.series.size(); });
   for (std::size_t i = 0; i < most->series.size(); ++i) {
-    const auto& name = most->series[i].name;
-    out += svg_line(fmt::format("M{:.1f} 14h22", x), plot_colours[i % plot_colours.size()], 3) +
-           svg_text(x + 28, 18, "start", name);
-    x += 46 + kCharacter * static_cast<double>(name.size());
+    const Series& series = most->series[i];
+    const char* colour = plot_colours[i % plot_colours.size()];
+    const std::string place = fmt::format("M{:.1f} 14h22", x);
+    out += series.stroke ? svg_line(place, colour, 3) : svg_line(place, colour, 10, " stroke-opacity=\"0.2\"");
+    out += svg_text(x + 28, 18, "start", series.name);
+    x += 46 + kCharacter * static_cast<double>(series.name.size());
   }
   return out;
 }

@@ -231,6 +231,22 @@ TEST(Synthesis, AnswersUnknownLabelsAndAnySegmentLength) {
   EXPECT_TRUE(out.deviation.values.allFinite());
 }
 
+TEST(Synthesis, GivesTheLatentPointsItFound) {
+  const auto s = speech(8);
+  Context context;
+  const auto out = SynthesiseSsgpdm{}(model(), s.audio, segments_of({{"q-b", 3}, {"b-a", 5}}), context);
+  ASSERT_EQ(out.states.segments.size(), 2u);
+  EXPECT_EQ(out.states.frames, 8);
+  EXPECT_EQ(out.states.segments[0].label, "b") << "the state that answered";
+  EXPECT_EQ(out.states.segments[1].start, 3);
+  Predictive visual;
+  for (const auto& segment : out.states.segments) {
+    const Sgpdm& state = model().states.at(segment.label);
+    visual.compute(state.visual, out.latents.values.middleRows(segment.start, segment.length));
+    EXPECT_EQ(unscaled(state.visual, visual.mean()), out.visual.values.middleRows(segment.start, segment.length));
+  }
+}
+
 TEST(Synthesis, OfOneFrameAndOfNone) {
   Context context;
   EXPECT_EQ(SynthesiseSsgpdm{}(model(), speech(1).audio, segments_of({{"b", 1}}), context).visual.frames(), 1);

@@ -52,10 +52,10 @@ TEST(Convergence, ShowsManyStatesByMedianBandAndWorst) {
   EXPECT_THAT(out.plot.svg, HasSubstr(">s20 (iteration limit)</text>"));
   EXPECT_THAT(out.plot.svg, HasSubstr(">s18 (iteration limit)</text>"));
   EXPECT_THAT(out.plot.svg, Not(HasSubstr(">s17")));
-  // The axis is 2 to 24 over 290 pixels: the median falls from 14 to 10, the band from 6 to 22 at the start.
-  EXPECT_THAT(out.plot.svg, HasSubstr("M0.0 131.8L"));
-  EXPECT_THAT(out.plot.svg, HasSubstr("L572.0 184.5\" fill=\"none\" stroke=\"#222222\""));
-  EXPECT_THAT(out.plot.svg, HasSubstr("M0.0 26.4L143.0 39.5L143.0 250.5L0.0 237.3Z"));
+  // The axis is 2 to 24 over 310 pixels: the median falls from 14 to 10, the band from 6 to 22 at the start.
+  EXPECT_THAT(out.plot.svg, HasSubstr("M0.0 140.9L"));
+  EXPECT_THAT(out.plot.svg, HasSubstr("L792.0 197.3\" fill=\"none\" stroke=\"#222222\""));
+  EXPECT_THAT(out.plot.svg, HasSubstr("M0.0 28.2L198.0 42.3L198.0 267.7L0.0 253.6Z"));
 }
 
 TEST(Convergence, CountsWhyTrainingStopped) {
