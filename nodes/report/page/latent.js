@@ -22,6 +22,7 @@ const unit = (point) => point.map((v, axis) => (v - middle[axis]) / half);
 const points = data.points.map(unit), paths = data.paths.map((path) => path.map(unit));
 const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((bits) =>
   unit(data.low.map((low, axis) => ((bits >> axis) & 1 ? data.high[axis] : low))));
+const radius = Math.hypot(...corners[7]);
 const edges = corners.flatMap((_, a) => [1, 2, 4].filter((bit) => !(a & bit)).map((bit) => [a, a | bit]));
 
 const share_of = (v) => (data.surest > data.least ? (v - data.least) / (data.surest - data.least) : 1);
@@ -48,11 +49,17 @@ const spot = (() => {
 
 // ---------------------------------------------------------------- drawing
 
+/** Pixels of a unit of the box, which fills the canvas at zoom 1. */
+function scale() {
+  const { width, height } = canvas.getBoundingClientRect();
+  return 0.54 * Math.min(width, height) * view.zoom / radius;
+}
+
 /** From the box to pixels: the third axis stands upright, nearer things are larger. */
 function camera() {
   const { width, height } = canvas.getBoundingClientRect();
   const [st, ct, si, ci] = [Math.sin(view.turn), Math.cos(view.turn), Math.sin(view.tilt), Math.cos(view.tilt)];
-  const size = 0.31 * Math.min(width, height) * view.zoom;
+  const size = scale();
   return ([x, y, z]) => {
     const across = ct * x - st * y, away = st * x + ct * y;
     const depth = ci * away - si * z, near = 6 / (6 + depth);
@@ -94,7 +101,8 @@ function draw_box(project) {
   const centre = project([0, 0, 0]);
   const write = (text, place, out) => {
     const p = project(place), away = Math.hypot(p.x - centre.x, p.y - centre.y) || 1;
-    brush.fillText(text, p.x + out * (p.x - centre.x) / away, p.y + out * (p.y - centre.y) / away);
+    const margin = brush.measureText(text).width / 2 + 4, x = p.x + out * (p.x - centre.x) / away;
+    brush.fillText(text, Math.min(canvas.clientWidth - margin, Math.max(margin, x)), p.y + out * (p.y - centre.y) / away);
   };
   [1, 2, 4].forEach((bit, axis) => {
     if (!data.axes[axis]) return;
@@ -105,14 +113,14 @@ function draw_box(project) {
     });
     const mix = (share) => corners[a].map((v, i) => v + share * (corners[b][i] - v));
     write(data.axes[axis], mix(0.5), 34);
-    write(number(data.low[axis]), mix(0.04), 15);
-    write(number(data.high[axis]), mix(0.96), 15);
+    write(number(data.low[axis]), mix(0.08), 15);
+    write(number(data.high[axis]), mix(0.92), 15);
   });
 }
 
 function draw_cloud(project) {
   const strength = 0.24 * Number($("density").value) ** 2;
-  const width = 2 * 2.4 / data.resolution * 0.31 * Math.min(canvas.clientWidth, canvas.clientHeight) * view.zoom;
+  const width = 4.8 / data.resolution * scale();
   for (const { place, share } of cloud) {
     const alpha = strength * share ** 3;
     if (alpha < 0.002) continue;

@@ -147,6 +147,14 @@ class LatentPageTest(unittest.TestCase):
         self.assertGreater(self.coloured(0), 20)
         self.assertGreater(self.drawn(), alone, "the box alone is less")
 
+    def test_fills_whatever_window(self):
+        fits = "Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.01"
+        for width, height in ((500, 900), (1100, 800)):
+            self.browser.ask("POST", "/window/rect", {"width": width, "height": height})
+            wait_for(lambda: self.run_in_page(f"innerWidth <= {width} && !waiting && {fits}"), "the space to fit")
+            self.settle()
+            self.picture(f"{width} wide")
+
     def test_cloud_follows_its_slider(self):
         with_cloud = self.drawn()
         self.browser.run("$('density').value = 0; $('density').dispatchEvent(new Event('input'))")
