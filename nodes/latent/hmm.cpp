@@ -43,27 +43,34 @@ void require_reachable(const Eigen::VectorXd& scores, Eigen::Index t) {
         t));
 }
 
-/// ln p(y_1..y_t, π_t), K × T.
-Eigen::MatrixXd forward(const MarkovChain& chain, const Eigen::MatrixXd& log_densities) {
-  Eigen::MatrixXd scores(log_densities.cols(), log_densities.rows());
-  scores.col(0) = chain.log_start + log_densities.row(0).transpose();
-  require_reachable(scores.col(0), 0);
-  for (Eigen::Index t = 1; t < scores.cols(); ++t) {
-    const Eigen::VectorXd before = scores.col(t - 1);
-    log_sum_steps(chain.log_transitions, before, scores.col(t));
-    scores.col(t) += log_densities.row(t).transpose();
-    require_reachable(scores.col(t), t);
+/// Logarithms keep their places however long a sequence is, as each frame is divided by p(y_t | y_1..y_{t−1}).
+struct Forward {
+  Eigen::MatrixXd scores;  ///< ln p(π_t | y_1..y_t), K × T
+  Eigen::VectorXd scales;  ///< ln p(y_t | y_1..y_{t−1}), T
+};
+
+Forward forward(const MarkovChain& chain, const Eigen::MatrixXd& log_densities) {
+  Forward f{{log_densities.cols(), log_densities.rows()}, Eigen::VectorXd(log_densities.rows())};
+  for (Eigen::Index t = 0; t < f.scores.cols(); ++t) {
+    Eigen::VectorXd score = chain.log_start;
+    if (t > 0) log_sum_steps(chain.log_transitions, f.scores.col(t - 1), score);
+    score += log_densities.row(t).transpose();
+    require_reachable(score, t);
+    f.scales(t) = log_sum(score);
+    f.scores.col(t) = score.array() - f.scales(t);
   }
-  return scores;
+  return f;
 }
 
-/// ln p(y_{t+1}..y_T | π_t), K × T.
-Eigen::MatrixXd backward(const MarkovChain& chain, const Eigen::MatrixXd& log_densities) {
+/// ln p(y_{t+1}..y_T | π_t) − ln p(y_{t+1}..y_T | y_1..y_t), K × T.
+Eigen::MatrixXd backward(const MarkovChain& chain, const Eigen::MatrixXd& log_densities,
+                         const Eigen::VectorXd& scales) {
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(log_densities.cols(), log_densities.rows());
   const Eigen::MatrixXd back = chain.log_transitions.transpose();
   for (Eigen::Index t = scores.cols() - 2; t >= 0; --t) {
     const Eigen::VectorXd after = scores.col(t + 1) + log_densities.row(t + 1).transpose();
     log_sum_steps(back, after, scores.col(t));
+    scores.col(t).array() -= scales(t + 1);
   }
   return scores;
 }
@@ -160,20 +167,17 @@ Eigen::MatrixXd log_densities(const Hmm& model, const Eigen::MatrixXd& frames) {
 }
 
 ChainPosterior forward_backward(const MarkovChain& chain, const Eigen::MatrixXd& log_densities) {
-  const Eigen::Index states = log_densities.cols(), frames = log_densities.rows();
-  Eigen::MatrixXd before = forward(chain, log_densities);
-  const Eigen::MatrixXd after = backward(chain, log_densities);
-  ChainPosterior p{{}, Eigen::MatrixXd::Zero(states, states), log_sum(before.col(frames - 1))};
-  for (Eigen::Index t = 0; t + 1 < frames; ++t) {
-    const Eigen::VectorXd next =
-        after.col(t + 1) + log_densities.row(t + 1).transpose() - Eigen::VectorXd::Constant(states, p.log_likelihood);
+  const Eigen::Index states = log_densities.cols();
+  const Forward f = forward(chain, log_densities);
+  const Eigen::MatrixXd after = backward(chain, log_densities, f.scales);
+  ChainPosterior p{{}, Eigen::MatrixXd::Zero(states, states), f.scales.sum()};
+  for (Eigen::Index t = 1; t < log_densities.rows(); ++t) {
+    const Eigen::VectorXd next = (after.col(t) + log_densities.row(t).transpose()).array() - f.scales(t);
     for (Eigen::Index k = 0; k < states; ++k)
       for (Eigen::Index j = 0; j < states; ++j)
-        p.steps(j, k) += exp_or_zero(before(j, t) + chain.log_transitions(j, k) + next(k));
+        p.steps(j, k) += exp_or_zero(f.scores(j, t - 1) + chain.log_transitions(j, k) + next(k));
   }
-  before += after;
-  p.states = (before.array() - p.log_likelihood).unaryExpr(&exp_or_zero).matrix().transpose();
-  p.states = normalised_rows(p.states);
+  p.states = normalised_rows((f.scores + after).unaryExpr(&exp_or_zero).transpose());
   return p;
 }
 

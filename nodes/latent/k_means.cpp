@@ -52,21 +52,36 @@ Eigen::MatrixXd without_empty(Eigen::MatrixXd in) {
   return in.leftCols(kept);
 }
 
-}  // namespace
+struct Clusters {
+  Eigen::MatrixXd in;  ///< N × K
+  double spread;       ///< squared distances from the clusters' means
+};
 
-Eigen::MatrixXd k_means(const Eigen::MatrixXd& rows, Eigen::Index clusters, Random& random, int iterations) {
-  const Eigen::MatrixXd centred = rows.rowwise() - rows.colwise().mean();
-  Eigen::MatrixXd centres = start(centred, clusters, random);
-  std::vector<Eigen::Index> labels = assign(centred, centres);
-  for (int i = 0; i < iterations; ++i) {
-    const Eigen::MatrixXd in = indicators(labels, centres.rows()), sums = in.transpose() * centred;
-    for (Eigen::Index k = 0; k < centres.rows(); ++k)
-      if (const double size = in.col(k).sum(); size > 0) centres.row(k) = sums.row(k) / size;
-    std::vector<Eigen::Index> next = assign(centred, centres);
+Clusters lloyd(const Eigen::MatrixXd& rows, Eigen::MatrixXd centres) {
+  std::vector<Eigen::Index> labels;
+  Eigen::MatrixXd in;
+  for (int i = 0; i < 30; ++i) {
+    std::vector<Eigen::Index> next = assign(rows, centres);
     if (next == labels) break;
     labels = std::move(next);
+    in = indicators(labels, centres.rows());
+    const Eigen::MatrixXd sums = in.transpose() * rows;
+    for (Eigen::Index k = 0; k < centres.rows(); ++k)
+      if (const double size = in.col(k).sum(); size > 0) centres.row(k) = sums.row(k) / size;
   }
-  return without_empty(indicators(labels, centres.rows()));
+  return {without_empty(in), (rows - in * centres).squaredNorm()};
+}
+
+}  // namespace
+
+Eigen::MatrixXd k_means(const Eigen::MatrixXd& rows, Eigen::Index clusters, Random& random, int starts) {
+  const Eigen::MatrixXd centred = rows.rowwise() - rows.colwise().mean();
+  Clusters best = lloyd(centred, start(centred, clusters, random));
+  for (int i = 1; i < starts; ++i) {
+    Clusters next = lloyd(centred, start(centred, clusters, random));
+    if (next.spread < best.spread) best = std::move(next);
+  }
+  return std::move(best.in);
 }
 
 }  // namespace talkgraph

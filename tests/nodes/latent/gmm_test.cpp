@@ -147,10 +147,16 @@ TEST(Floored, IsTheLikeliestCovarianceAboveTheFloor) {
   EXPECT_EQ(floored(positive(3, 1, 10), floors), positive(3, 1, 10));
 }
 
+Track track_of(Eigen::MatrixXd values) {
+  Track track;
+  track.values = std::move(values);
+  return track;
+}
+
 TEST(TrainGmm, LearnsFromMeasuredFramesAndSaysWhereItCannot) {
   Context context;
   Random random(1);
-  Track track{gaussian(40, 2, 1)};
+  Track track = track_of(gaussian(40, 2, 1));
   track.lost = {5};
   track.values.row(5).setConstant(1e6);
   std::string log;
@@ -164,8 +170,8 @@ TEST(TrainGmm, LearnsFromMeasuredFramesAndSaysWhereItCannot) {
   const Track given = GmmResponsibilities{}(model, track);
   EXPECT_TRUE(given.values.rowwise().sum().isOnes(1e-12));
   EXPECT_EQ(given.lost, track.lost);
-  EXPECT_EQ(GmmResponsibilities{}(model, {Eigen::MatrixXd(0, 2)}).frames(), 0);
-  EXPECT_THROW(GmmResponsibilities{}(model, {gaussian(3, 3, 1)}), std::runtime_error);
+  EXPECT_EQ(GmmResponsibilities{}(model, track_of(Eigen::MatrixXd(0, 2))).frames(), 0);
+  EXPECT_THROW(GmmResponsibilities{}(model, track_of(gaussian(3, 3, 1))), std::runtime_error);
   track.values(7, 1) = NAN;
   EXPECT_THROW(GmmResponsibilities{}(model, track), std::runtime_error);
   EXPECT_THROW(train({{"a", track}}, random, context), std::runtime_error);

@@ -21,7 +21,7 @@ Hmm truth() {
   model.transitions << 0.8, 0.15, 0.05, 0.1, 0.8, 0.1, 0.3, 0.1, 0.6;
   const auto component = [](double x, double y) { return Eigen::RowVector2d(x, y); };
   model.observations.push_back({Eigen::Vector2d(0.6, 0.4), Eigen::MatrixXd(2, 2), {positive(2, 1), positive(2, 2)}});
-  model.observations[0].means << component(0, 0), component(0, 6);
+  model.observations[0].means << component(0, 0), component(0, 3);
   model.observations.push_back({Eigen::VectorXd::Ones(1), component(7, 0), {positive(2, 3)}});
   model.observations.push_back({Eigen::VectorXd::Ones(1), component(7, 8), {positive(2, 4)}});
   return model;
@@ -118,12 +118,7 @@ TEST(Hmm, RecoversTheModelItsDataWereDrawnFrom) {
   train.states = 3;
   train.mixture = 2;
   train.covariance = CovarianceKind::full;
-  // Components of the first state lie apart, so that clusters split it: some starts end in a lower maximum.
-  Hmm found;
-  for (int start = 0; start < 10; ++start) {
-    Hmm next = train.fit(data, random, context);
-    if (found.trace.empty() || next.trace.back() > found.trace.back()) found = std::move(next);
-  }
+  const Hmm found = train.fit(data, random, context);
   double reached = 0;
   for (int s = 0; s < 60; ++s)
     reached +=

@@ -80,6 +80,7 @@ struct Joint {
     for (Eigen::Index t = 0; t < frames.rows(); ++t)
       if (!std::binary_search(lost.begin(), lost.end(), t))
         for (Eigen::Index i = 0; i < dims; ++i) kept.push_back(t * dims + i);
+    if (kept.empty()) return;
     const Eigen::MatrixXd rows = frames.transpose();
     const Eigen::VectorXd y = rows.reshaped()(kept), expected = observed_mean(kept);
     const Eigen::MatrixXd map = observe(kept, Eigen::all);
@@ -107,7 +108,9 @@ void expect_dense(const Lds& model, const Eigen::MatrixXd& frames, const std::ve
     const auto at = static_cast<std::size_t>(t);
     EXPECT_LT((smoothed.means.row(t).transpose() - joint.mean.segment(t * d, d)).norm(), 1e-9);
     EXPECT_LT((smoothed.covariances[at] - joint.covariance.block(t * d, t * d, d, d)).norm(), 1e-9);
-    if (t > 0) EXPECT_LT((smoothed.lagged[at - 1] - joint.covariance.block(t * d, (t - 1) * d, d, d)).norm(), 1e-9);
+    if (t > 0) {
+      EXPECT_LT((smoothed.lagged[at - 1] - joint.covariance.block(t * d, (t - 1) * d, d, d)).norm(), 1e-9);
+    }
 
     Joint so_far(model, t + 1);
     std::vector<std::int64_t> lost_so_far;
