@@ -73,8 +73,6 @@ Eigen::MatrixXd background_of(const LatentPicture& p, const LatentSpace& space, 
   return background;
 }
 
-// ---- drawing
-
 /// From dark to white.
 std::string shade(double share) {
   const auto mix = [&](int dark) {

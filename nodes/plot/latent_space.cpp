@@ -246,7 +246,7 @@ std::vector<Eigen::MatrixXd> paths_within(const LatentSpace& space, const Collec
       if (s.start < 0 || s.start + s.length > path.frames())
         throw std::runtime_error(fmt::format("path \"{}\" has {} frames, but a segment of frames {} to {}",
                                              paths.key(i), path.frames(), s.start, s.start + s.length - 1));
-      if (s.label == space.label) parts.push_back(path.values.block(s.start, 0, s.length, d));
+      if (s.label == space.label && s.length > 0) parts.push_back(path.values.block(s.start, 0, s.length, d));
     }
   }
   return parts;

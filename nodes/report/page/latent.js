@@ -63,7 +63,8 @@ function camera() {
   return ([x, y, z]) => {
     const across = ct * x - st * y, away = st * x + ct * y;
     const depth = ci * away - si * z, near = 6 / (6 + depth);
-    return { x: width / 2 + size * near * across, y: height / 2 - size * near * (ci * z + si * away), depth, size: near };
+    const up = ci * z + si * away;
+    return { x: width / 2 + size * near * across, y: height / 2 - size * near * up, depth, size: near };
   };
 }
 
@@ -102,7 +103,8 @@ function draw_box(project) {
   const write = (text, place, out) => {
     const p = project(place), away = Math.hypot(p.x - centre.x, p.y - centre.y) || 1;
     const margin = brush.measureText(text).width / 2 + 4, x = p.x + out * (p.x - centre.x) / away;
-    brush.fillText(text, Math.min(canvas.clientWidth - margin, Math.max(margin, x)), p.y + out * (p.y - centre.y) / away);
+    const y = p.y + out * (p.y - centre.y) / away;
+    brush.fillText(text, Math.min(canvas.clientWidth - margin, Math.max(margin, x)), y);
   };
   [1, 2, 4].forEach((bit, axis) => {
     if (!data.axes[axis]) return;

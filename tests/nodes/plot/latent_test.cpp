@@ -120,7 +120,7 @@ TEST(LatentSpace, TakesTheSegmentsOfItsState) {
   const LatentSpace space = latent_space(model, "");
   Track path;
   path.values.setRandom(6, 4);
-  const SegmentTrack segments{{{"s", 0, 2}, {"t", 2, 3}, {"t", 5, 1}}, 6, 25};
+  const SegmentTrack segments{{{"s", 0, 2}, {"t", 2, 3}, {"t", 5, 1}, {"t", 6, 0}}, 6, 25};
   const auto parts = paths_within(space, {{"a", path}}, {{"a", segments}});
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_EQ(parts[0], path.values.block(2, 0, 3, 3));

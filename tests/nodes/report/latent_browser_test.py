@@ -17,7 +17,8 @@ GRAPH = {"nodes": {
     "parts": {"type": "corpus.parts", "in": {"recording": "texts"}},
     "sound": {"graph": str(REPOSITORY / "pipelines/fragments/speech.json"), "in": {"audio": "parts.audio"}},
     "labels": {"type": "phones.label_frames", "in": {"phones": "parts.phones", "like": "sound.track"}},
-    "gpdm": {"type": "latent.gpdm", "in": {"tracks": "sound.track"}, "params": {"latent_dimension": 3, "iterations": 20}},
+    "gpdm": {"type": "latent.gpdm", "in": {"tracks": "sound.track"},
+             "params": {"latent_dimension": 3, "iterations": 20}},
     "page": {"type": "report.latent", "in": {"model": "gpdm", "labels": "labels.labels", "paths": {}, "states": {}},
              "params": {"title": TITLE}}}}
 
@@ -50,7 +51,8 @@ class LatentPageTest(unittest.TestCase):
     def coloured(self, phone):
         """Pixels in the colour of a phone."""
         return self.run_in_page("(() => { const n = parseInt(data.phones[arguments[0]].colour.slice(1), 16);"
-                                "const pixels = brush.getImageData(0, 0, canvas.width, canvas.height).data; let count = 0;"
+                                "const pixels = brush.getImageData(0, 0, canvas.width, canvas.height).data;"
+                                "let count = 0;"
                                 "for (let i = 0; i < pixels.length; i += 4) count += pixels[i] === n >> 16 &&"
                                 "  pixels[i + 1] === (n >> 8 & 255) && pixels[i + 2] === (n & 255);"
                                 "return count })()", phone)
@@ -64,7 +66,8 @@ class LatentPageTest(unittest.TestCase):
     def place(self, frame):
         """Of a frame in the window."""
         return self.run_in_page("(() => { const box = canvas.getBoundingClientRect();"
-                                "const p = camera()(points[arguments[0]]); return [box.x + p.x, box.y + p.y] })()", frame)
+                                "const p = camera()(points[arguments[0]]);"
+                                "return [box.x + p.x, box.y + p.y] })()", frame)
 
     def middle(self):
         return self.run_in_page("(() => { const b = canvas.getBoundingClientRect();"
@@ -78,7 +81,8 @@ class LatentPageTest(unittest.TestCase):
         self.assertEqual([entry["message"] for entry in self.browser.log() if entry["level"] == "SEVERE"], [])
         self.assertEqual(self.run_in_page("performance.getEntriesByType('resource').length"), 0)
         self.assertIn("phones", self.run_in_page("canvas.getAttribute('aria-label')"))
-        rows = self.run_in_page("[...document.querySelectorAll('#numbers tbody tr')].map((row) => row.cells[1].textContent)")
+        rows = self.run_in_page("[...document.querySelectorAll('#numbers tbody tr')]"
+                                ".map((row) => row.cells[1].textContent)")
         self.assertEqual([int(row) for row in rows], self.run_in_page("data.phones.map(({ count }) => count)"))
         self.picture("opened")
 
