@@ -34,8 +34,8 @@ struct LatentPicture {
   std::vector<std::int64_t> lengths;   ///< of the windows
   PhoneColours phones;                 ///< of the points
   std::vector<Eigen::MatrixXd> paths;  ///< T × 2
-  Eigen::MatrixXd
-      background;  ///< log_precision() at latents_at(), rows from the lower to the upper limit of y, columns along x
+  /// log_precision() at latents_at(): rows from the lower to the upper limit of y, columns along x.
+  Eigen::MatrixXd background;
   std::string process;  ///< of the background
 };
 LatentPicture latent_picture(const PlotLatent& node, const LatentSpace& space, const Collected<FrameLabels>& labels,
