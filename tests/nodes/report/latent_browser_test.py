@@ -30,7 +30,8 @@ class LatentPageTest(unittest.TestCase):
         cls.addClassCleanup(temporary.cleanup)
         folder = pathlib.Path(temporary.name)
         (folder / "graph.json").write_text(json.dumps(GRAPH))
-        subprocess.run([PROGRAM, "run", "graph.json", "-o", "run"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([PROGRAM, "run", "graph.json", "-o", "run", "--no-cache"], cwd=folder, check=True,
+                       stdout=subprocess.DEVNULL)
         cls.page = folder / "run" / "latent-space.html"
         cls.browser = Browser(folder / "profile", (1100, 800))
         cls.addClassCleanup(cls.browser.quit)
