@@ -192,8 +192,9 @@ class Drawing {
         points += dot(part, t);
       }
     if (points.empty()) return "";
-    return svg_line(path, "#fff", 3.4, kRound) + svg_line(path, "#000", 1.4, kRound) +
-           svg_line(points, "#000", 4.6, kRound);
+    const double width = points.size() > 4000 ? 0.9 : 1.4;
+    return svg_line(path, "#fff", width + 2, kRound) + svg_line(path, "#000", width, kRound) +
+           svg_line(points, "#000", 3.2 * width, kRound);
   }
 
   std::string legend() const {

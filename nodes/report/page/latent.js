@@ -52,7 +52,7 @@ const spot = (() => {
 /** Pixels of a unit of the box, which fills the canvas at zoom 1. */
 function scale() {
   const { width, height } = canvas.getBoundingClientRect();
-  return 0.54 * Math.min(width, height) * view.zoom / radius;
+  return 0.5 * Math.min(width, height) * view.zoom / radius;
 }
 
 /** From the box to pixels: the third axis stands upright, nearer things are larger. */
