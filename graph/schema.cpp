@@ -32,7 +32,8 @@ Json value_schema(const std::string& type, const ParameterSpec& spec) {
   if (type.starts_with(list)) return {{"type", "array"}, {"items", value_schema(type.substr(list.size()), spec)}};
   if (type == "boolean") return {{"type", "boolean"}};
   if (type == "choice") return {{"enum", spec.choices}};
-  if (type == "object") return parameters_schema(spec.members);
+  if (type == "object")  // the members of a list's objects are not told here; reading the graph checks them
+    return spec.members.empty() ? Json{{"type", "object"}} : parameters_schema(spec.members);
   if (type == "graph") return object({{"graph", text("a graph file")}, {"params", object_of(true)}}, {"graph"});
   if (type == "ratio" || type == "integer" || type == "number") {
     Json number = {{"type", type == "ratio" ? "number" : type}};
