@@ -97,7 +97,7 @@ void describe(Description<TrainGmm>& d) {
   d.source("Thesis §4.2.2, Eqns 4.5-4.6; expectation maximisation from k-means");
   d.input("tracks", "whose measured frames are learnt from").output("model", "weights, means and covariances");
   d.param("components", &TrainGmm::components).at_least(1).doc("fewer if there are fewer distinct frames");
-  d.param("covariance", &TrainGmm::covariance);
+  d.param("covariance", &TrainGmm::covariance).doc("full, or variances only");
   d.param("floor", &TrainGmm::floor)
       .positive()
       .doc("least variance of a component in any direction, as a share of the frames' variance a dimension");
@@ -116,7 +116,7 @@ void describe(Description<GmmResponsibilities>& d) {
   d.type("latent.gmm_responsibilities").version(1);
   d.summary("probabilities that frames are of each component of a mixture");
   d.source("Thesis §4.2.2, Eqns 4.6-4.7, corrected: the denominator sums m_j");
-  d.input("model").input("track", "of the features that the model was trained on");
+  d.input("model", "trained on features of this kind").input("track", "of the features that the model was trained on");
   d.output("responsibilities", "T × M, rows sum to 1");
 }
 

@@ -223,7 +223,7 @@ void describe(Description<TrainHmm>& d) {
   d.input("tracks", "every run of measured frames is a sequence").output("model", "start, transitions and mixtures");
   d.param("states", &TrainHmm::states).at_least(1).doc("fewer if there are fewer distinct frames");
   d.param("mixture", &TrainHmm::mixture).at_least(1).doc("Gaussians of each state");
-  d.param("covariance", &TrainHmm::covariance);
+  d.param("covariance", &TrainHmm::covariance).doc("full, or variances only");
   d.param("floor", &TrainHmm::floor)
       .positive()
       .doc("least variance of a Gaussian in any direction, as a share of the frames' variance a dimension");
@@ -252,7 +252,7 @@ void describe(Description<DecodeHmm>& d) {
   d.type("latent.hmm_decode").version(1);
   d.summary("the likeliest path of a track through a hidden Markov model, and each frame's probabilities");
   d.source("Thesis §4.2.3, Algorithm 2 and Eqn 4.10, corrected as in docs/method.md §3");
-  d.input("model").input("track", "of the features that the model was trained on");
+  d.input("model", "trained on features of this kind").input("track", "of the features that the model was trained on");
   d.output("labels", &DecodeHmm::Out::labels, "a state a frame: 0, 1, ... its row in the model");
   d.output("posteriors", &DecodeHmm::Out::posteriors, "T × K, rows sum to 1");
 }

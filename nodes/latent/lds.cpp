@@ -301,7 +301,7 @@ void describe(Description<SmoothLds>& d) {
   d.type("latent.lds_smooth").version(1);
   d.summary("the states of a track under a linear dynamical system, and the frames that they give");
   d.source("Thesis §4.2.4; Kalman 1960; Rauch, Tung and Striebel 1965");
-  d.input("model").input("track", "of the features that the model was trained on");
+  d.input("model", "trained on features of this kind").input("track", "of the features that the model was trained on");
   d.output("states", &SmoothLds::Out::states, "means, T × d");
   d.output("track", &SmoothLds::Out::track, "what the states give without noise, T × D");
   d.param("smooth", &SmoothLds::smooth)

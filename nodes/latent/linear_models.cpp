@@ -192,7 +192,7 @@ void describe(Description<ProjectPpca>& d) {
   d.type("latent.ppca_project").version(1);
   d.summary("takes a track to the latent space of probabilistic principal components");
   d.source("Tipping and Bishop 1999");
-  d.input("model").input("track", "of the features that the model was trained on");
+  d.input("model", "trained on features of this kind").input("track", "of the features that the model was trained on");
   d.output("latents", "posterior means, T × d");
 }
 
