@@ -34,8 +34,8 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Of texts of `length` bytes, padded with zeros. HDF5 knows no text of length 0. The bytes are UTF-8, but are not
-/// called so: Octave would not read them.
+/// Of texts of `length` bytes, padded with zeros. HDF5 knows no text of length 0. The bytes are UTF-8, the character
+/// set that the file names is HDF5's default, ASCII.
 Handle text_type(std::size_t length) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "a text cannot be kept");
   H5Tset_size(type, std::max<std::size_t>(length, 1));

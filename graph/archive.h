@@ -79,11 +79,11 @@ class Archive {
   void rows(std::string_view name, std::vector<T>& value);
 };
 
-/// Saves what `visit` gives an archive to an HDF5 file, whole or not at all, that h5py, Octave and MATLAB open: structs
-/// are groups; numbers and texts, scalar datasets; lists and matrices, datasets of one and two dimensions; a list of
-/// matrices of one size, a dataset of three; a list of rows (is_row), a group of columns; any other list, a group with
-/// `size` and the elements "0", "1", ... Texts have fixed length and are UTF-8. An optional member that is not there is
-/// not in the file. Throws std::runtime_error that names the file and the cause.
+/// Saves what `visit` gives an archive to an HDF5 file, whole or not at all, that h5py opens: structs are groups;
+/// numbers and texts, scalar datasets; lists and matrices, datasets of one and two dimensions; a list of matrices of
+/// one size, a dataset of three; a list of rows (is_row), a group of columns; any other list, a group with `size` and
+/// the elements "0", "1", ... Texts have fixed length and are UTF-8. An optional member that is not there is not in the
+/// file. Throws std::runtime_error that names the file and the cause.
 void write_hdf5(const std::string& path, const std::function<void(Archive&)>& visit);
 std::unique_ptr<Archive> hdf5_reader(const std::string& path);
 
