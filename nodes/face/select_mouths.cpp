@@ -6,6 +6,7 @@
 
 #include "nodes/face/mouth_region.h"
 #include "nodes/face/shapes.h"
+#include "nodes/types/best_path.h"
 
 namespace talkgraph {
 namespace {
@@ -50,26 +51,6 @@ struct Textures {
 
 }  // namespace
 
-std::vector<std::int64_t> cheapest_path(const Eigen::MatrixXd& cost,
-                                        const std::function<Eigen::MatrixXd(Eigen::Index)>& step) {
-  const auto frames = cost.rows(), states = cost.cols();
-  if (frames == 0 || states == 0) return {};
-  Eigen::MatrixXd total = cost;
-  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> from(frames, states);
-  for (Eigen::Index t = 1; t < frames; ++t) {
-    const Eigen::MatrixXd way = step(t).colwise() + total.row(t - 1).transpose();
-    for (Eigen::Index j = 0; j < states; ++j) total(t, j) += way.col(j).minCoeff(&from(t, j));
-  }
-  std::vector<std::int64_t> path(static_cast<std::size_t>(frames));
-  Eigen::Index at = 0;
-  total.row(frames - 1).minCoeff(&at);
-  for (auto t = frames; t-- > 0;) {
-    path[static_cast<std::size_t>(t)] = at;
-    if (t > 0) at = from(t, at);
-  }
-  return path;
-}
-
 MouthTrack SelectMouths::operator()(const AppearanceModel& model, const Mouths& mouths, const Track& parameters) const {
   check_dimension(model, parameters);
   MouthTrack out{mouths, {}};
@@ -82,15 +63,16 @@ MouthTrack SelectMouths::operator()(const AppearanceModel& model, const Mouths& 
   const auto near = nearest(metric * parameters.values.transpose(), metric * mouths.parameters.transpose(),
                             std::min<Eigen::Index>(candidates, mouths.size()));
   Textures before(model, mouths, near, 0);
-  const auto path = cheapest_path(near.distance, [&](Eigen::Index t) {
+  const auto scores = [&](Eigen::Index t) -> Eigen::VectorXd { return -near.distance.row(t); };
+  const auto steps = [&](Eigen::Index t) -> Eigen::MatrixXd {
     Textures now(model, mouths, near, t);
     const Eigen::MatrixXd likeness = (before.columns.transpose() * now.columns).cast<double>();
     Eigen::MatrixXd step = smoothness * (((-2 * likeness).rowwise() + now.sizes).colwise() + before.sizes.transpose());
     before = std::move(now);
-    return Eigen::MatrixXd(step.cwiseMax(0));
-  });
-  for (Eigen::Index t = 0; t < parameters.frames(); ++t)
-    out.chosen.push_back(near.mouth(t, path[static_cast<std::size_t>(t)]));
+    return -step.cwiseMax(0);
+  };
+  for (const Eigen::Index state : best_path(parameters.frames(), scores, steps).states)
+    out.chosen.push_back(near.mouth(static_cast<Eigen::Index>(out.chosen.size()), state));
   return out;
 }
 

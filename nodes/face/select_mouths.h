@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <vector>
-
 #include "graph/description.h"
 #include "nodes/types/appearance_model.h"
 #include "nodes/types/mouths.h"
@@ -25,10 +21,5 @@ struct SelectMouths {
   MouthTrack operator()(const AppearanceModel& model, const Mouths& mouths, const Track& parameters) const;
 };
 void describe(Description<SelectMouths>& d);
-
-/// The sequence of states of least cost: `cost` of being in each at each time (T × states), and step(t) of passing from
-/// each at t − 1 (rows) to each at t. Of equals, the first.
-std::vector<std::int64_t> cheapest_path(const Eigen::MatrixXd& cost,
-                                        const std::function<Eigen::MatrixXd(Eigen::Index)>& step);
 
 }  // namespace talkgraph

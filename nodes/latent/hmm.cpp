@@ -9,6 +9,7 @@
 #include "nodes/latent/em.h"
 #include "nodes/latent/gmm.h"
 #include "nodes/latent/k_means.h"
+#include "nodes/types/best_path.h"
 
 namespace talkgraph {
 
@@ -182,23 +183,14 @@ ChainPosterior forward_backward(const MarkovChain& chain, const Eigen::MatrixXd&
 }
 
 ChainPath viterbi(const MarkovChain& chain, const Eigen::MatrixXd& log_densities) {
-  const Eigen::Index states = log_densities.cols(), frames = log_densities.rows();
-  Eigen::VectorXd scores = chain.log_start + log_densities.row(0).transpose(), before;
-  require_reachable(scores, 0);
-  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> pointers(states, frames);
-  for (Eigen::Index t = 1; t < frames; ++t) {
-    before = scores;
-    for (Eigen::Index k = 0; k < states; ++k)
-      scores(k) = (before + chain.log_transitions.col(k)).maxCoeff(&pointers(k, t)) + log_densities(t, k);
-    require_reachable(scores, t);
-  }
-  ChainPath path{std::vector<Eigen::Index>(static_cast<std::size_t>(frames)), 0};
-  path.log_probability = scores.maxCoeff(&path.states.back());
-  for (Eigen::Index t = frames - 1; t > 0; --t) {
-    const auto at = static_cast<std::size_t>(t);
-    path.states[at - 1] = pointers(path.states[at], t);
-  }
-  return path;
+  const auto scores = [&](Eigen::Index t) -> Eigen::VectorXd {
+    if (t == 0) return chain.log_start + log_densities.row(0).transpose();
+    return log_densities.row(t);
+  };
+  BestPath best = best_path(log_densities.rows(), scores,
+                            [&](Eigen::Index) -> const Eigen::MatrixXd& { return chain.log_transitions; });
+  for (std::size_t t = 0; t < best.scores.size(); ++t) require_reachable(best.scores[t], static_cast<Eigen::Index>(t));
+  return {std::move(best.states), best.scores.back().maxCoeff()};
 }
 
 Hmm TrainHmm::fit(const Sequences& data, Random& random, Context& context) const {
@@ -224,13 +216,7 @@ void describe(Description<TrainHmm>& d) {
   d.param("states", &TrainHmm::states).at_least(1).doc("fewer if there are fewer distinct frames");
   d.param("mixture", &TrainHmm::mixture).at_least(1).doc("Gaussians of each state");
   d.param("covariance", &TrainHmm::covariance).doc("full, or variances only");
-  d.param("floor", &TrainHmm::floor)
-      .positive()
-      .doc("least variance of a Gaussian in any direction, as a share of the frames' variance a dimension");
-  d.param("iterations", &TrainHmm::iterations).at_least(0).doc("limit of expectation maximisation");
-  d.param("tolerance", &TrainHmm::tolerance)
-      .at_least(0)
-      .doc("it ends when the log-likelihood gains no more than this in an iteration, a frame");
+  describe_em(d, "a Gaussian");
 }
 
 DecodeHmm::Out DecodeHmm::operator()(const Hmm& model, const Track& track, Context& context) const {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "graph/random.h"
+#include "nodes/latent/hmm.h"
 #include "nodes/latent/predictive.h"
 
 namespace talkgraph {
@@ -43,31 +44,14 @@ Eigen::MatrixXd log_densities(const Eigen::MatrixXd& a, const Eigen::MatrixXd& m
   return -0.5 * ((squares.array().max(0.0).rowwise() / variances.transpose().array()).rowwise() + normaliser.array());
 }
 
-/// ln p of each step, from the state of a column to that of a row.
+/// ln p of each step, from the state of a row to that of a column.
 Eigen::MatrixXd log_transitions(const Sgpdm& state, const Eigen::MatrixXd& points) {
   if (!state.dynamics) return Eigen::MatrixXd::Zero(points.rows(), points.rows());
   Predictive h;
   h.compute(*state.dynamics, points);
   Eigen::MatrixXd next = h.mean();
   if (state.form == DynamicsForm::difference) next += points;
-  return log_densities(points, next, h.variance());
-}
-
-/// The states of the best path, by Viterbi's algorithm; observations are T × S.
-std::vector<Eigen::Index> best_path(const Eigen::MatrixXd& observations, const Eigen::RowVectorXd& first,
-                                    const Eigen::MatrixXd& transitions) {
-  const Eigen::Index frames = observations.rows(), states = observations.cols();
-  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, Eigen::Dynamic> came_from(frames, states);
-  Eigen::RowVectorXd score = first + observations.row(0), next(states);
-  for (Eigen::Index t = 1; t < frames; ++t) {
-    for (Eigen::Index s = 0; s < states; ++s)
-      next[s] = (transitions.row(s) + score).maxCoeff(&came_from(t, s)) + observations(t, s);
-    score.swap(next);
-  }
-  std::vector<Eigen::Index> path(static_cast<std::size_t>(frames));
-  score.maxCoeff(&path.back());
-  for (std::size_t t = path.size() - 1; t > 0; --t) path[t - 1] = came_from(static_cast<Eigen::Index>(t), path[t]);
-  return path;
+  return log_densities(points, next, h.variance()).transpose();
 }
 
 }  // namespace
@@ -110,8 +94,9 @@ Eigen::MatrixXd likeliest_path(const Sgpdm& state, const Eigen::MatrixXd& audio,
   Predictive f;
   f.compute(state.audio, points);
   const Eigen::VectorXd nowhere = Eigen::VectorXd::Constant(1, state.first_variance);
-  const Eigen::RowVectorXd first = log_densities(points, Eigen::MatrixXd::Zero(1, points.cols()), nowhere).transpose();
-  const auto path = best_path(log_densities(audio, f.mean(), f.variance()), first, log_transitions(state, points));
+  const MarkovChain chain{log_densities(points, Eigen::MatrixXd::Zero(1, points.cols()), nowhere),
+                          log_transitions(state, points)};
+  const auto path = viterbi(chain, log_densities(audio, f.mean(), f.variance())).states;
   return points(path, Eigen::all);
 }
 

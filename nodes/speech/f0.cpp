@@ -9,6 +9,8 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
+#include "nodes/types/best_path.h"
+
 namespace talkgraph {
 namespace {
 
@@ -44,30 +46,21 @@ double local_score(const F0& how, const F0Candidate& c, double loudness) {
   return how.voicing_threshold + std::max(0.0, quiet);
 }
 
-/// The best path through the candidates of all frames (Viterbi): which candidate each frame takes.
-std::vector<std::size_t> best_path(const F0& how, const std::vector<std::vector<F0Candidate>>& frames,
-                                   const Eigen::VectorXd& loudness, double hundredths) {
-  std::vector<std::vector<std::size_t>> before(frames.size());
-  std::vector<double> scores, last;
-  for (std::size_t t = 0; t < frames.size(); ++t) {
-    scores.clear();
-    for (const auto& candidate : frames[t]) {
-      std::size_t best = 0;
-      double most = 0;
-      for (std::size_t i = 0; i < last.size(); ++i) {
-        const double score = last[i] - hundredths * transition(how, frames[t - 1][i], candidate);
-        if (i == 0 || score > most) most = score, best = i;
-      }
-      before[t].push_back(best);
-      scores.push_back(most + local_score(how, candidate, loudness[static_cast<Index>(t)]));
-    }
-    last = scores;
-  }
-  std::vector<std::size_t> path(frames.size());
-  if (path.empty()) return path;
-  path.back() = static_cast<std::size_t>(std::max_element(last.begin(), last.end()) - last.begin());
-  for (std::size_t t = frames.size() - 1; t > 0; --t) path[t - 1] = before[t][path[t]];
-  return path;
+/// Which candidate each frame takes, hundredths of a second apart.
+std::vector<Index> chosen_candidates(const F0& how, const std::vector<std::vector<F0Candidate>>& frames,
+                                     const Eigen::VectorXd& loudness, double hundredths) {
+  const auto size = [&](Index t) { return static_cast<Index>(frames[static_cast<std::size_t>(t)].size()); };
+  const auto at = [&](Index t, Index i) -> const F0Candidate& {
+    return frames[static_cast<std::size_t>(t)][static_cast<std::size_t>(i)];
+  };
+  const auto scores = [&](Index t) -> Eigen::VectorXd {
+    return Eigen::VectorXd::NullaryExpr(size(t), [&](Index i) { return local_score(how, at(t, i), loudness[t]); });
+  };
+  const auto steps = [&](Index t) -> Eigen::MatrixXd {
+    return Eigen::MatrixXd::NullaryExpr(
+        size(t - 1), size(t), [&](Index i, Index j) { return -hundredths * transition(how, at(t - 1, i), at(t, j)); });
+  };
+  return best_path(static_cast<Index>(frames.size()), scores, steps).states;
 }
 
 void bridge(Eigen::Ref<Eigen::VectorXd> f0) {
@@ -162,9 +155,10 @@ Track F0::operator()(const Frames& frames) const {
   }
   if (const double loudest = loudness.maxCoeff(); loudest > 0) loudness /= loudest;
 
-  const auto path = best_path(*this, candidates, loudness, 0.01 * frames.rate.value());
+  const auto path = chosen_candidates(*this, candidates, loudness, 0.01 * frames.rate.value());
   for (Index t = 0; t < count; ++t) {
-    const auto& chosen = candidates[static_cast<std::size_t>(t)][path[static_cast<std::size_t>(t)]];
+    const auto i = static_cast<std::size_t>(t);
+    const auto& chosen = candidates[i][static_cast<std::size_t>(path[i])];
     out.values.row(t) << chosen.f0, chosen.strength;
   }
   if (unvoiced == Unvoiced::bridged) bridge(out.values.col(0));

@@ -418,34 +418,6 @@ TEST(Mouths, ComeBackFromAFile) {
   }
 }
 
-TEST(CheapestPath, IsTheBestOfAll) {
-  Random random(7);
-  for (int round = 0; round < 30; ++round) {
-    Eigen::MatrixXd cost(5, 3);
-    std::vector<Eigen::MatrixXd> steps(5, Eigen::MatrixXd(3, 3));
-    for (auto& v : cost.reshaped()) v = random.uniform();
-    for (auto& step : steps)
-      for (auto& v : step.reshaped()) v = random.uniform();
-    const auto sum = [&](const std::vector<std::int64_t>& path) {
-      double total = cost(0, path[0]);
-      for (std::size_t t = 1; t < 5; ++t)
-        total += cost(static_cast<Eigen::Index>(t), path[t]) + steps[t](path[t - 1], path[t]);
-      return total;
-    };
-    double best = std::numeric_limits<double>::infinity();
-    for (int code = 0; code < 243; ++code)
-      best = std::min(best, sum({code % 3, code / 3 % 3, code / 9 % 3, code / 27 % 3, code / 81}));
-    EXPECT_NEAR(sum(cheapest_path(cost, [&](Eigen::Index t) { return steps[static_cast<std::size_t>(t)]; })), best,
-                1e-12);
-  }
-}
-
-TEST(CheapestPath, OfNothingIsEmpty) {
-  const auto none = [](Eigen::Index) { return Eigen::MatrixXd(0, 0); };
-  EXPECT_TRUE(cheapest_path(Eigen::MatrixXd(0, 3), none).empty());
-  EXPECT_TRUE(cheapest_path(Eigen::MatrixXd(3, 0), none).empty());
-}
-
 class RealMouths : public testing::Test {
  protected:
   RealMouths() {
