@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "graph/context.h"
+#include "graph/description.h"
 
 namespace talkgraph {
 
@@ -41,6 +42,18 @@ std::vector<double> run_em(const EmLimits& limits, Eigen::Index frames, const st
                           frames, trace.back(), trace.back() / static_cast<double>(frames), trace.size() - 1,
                           settled ? "" : ", not converged"));
   return trace;
+}
+
+/// The parameters of a node that trains so; `what` has variances ("a component").
+template <class Node>
+void describe_em(Description<Node>& d, const std::string& what) {
+  d.param("floor", &Node::floor)
+      .positive()
+      .doc("least variance of " + what + " in any direction, as a share of the frames' variance a dimension");
+  d.param("iterations", &Node::iterations).at_least(0).doc("limit of expectation maximisation");
+  d.param("tolerance", &Node::tolerance)
+      .at_least(0)
+      .doc("it ends when the log-likelihood gains no more than this in an iteration, a frame");
 }
 
 }  // namespace talkgraph

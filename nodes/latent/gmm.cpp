@@ -98,13 +98,7 @@ void describe(Description<TrainGmm>& d) {
   d.input("tracks", "whose measured frames are learnt from").output("model", "weights, means and covariances");
   d.param("components", &TrainGmm::components).at_least(1).doc("fewer if there are fewer distinct frames");
   d.param("covariance", &TrainGmm::covariance).doc("full, or variances only");
-  d.param("floor", &TrainGmm::floor)
-      .positive()
-      .doc("least variance of a component in any direction, as a share of the frames' variance a dimension");
-  d.param("iterations", &TrainGmm::iterations).at_least(0).doc("limit of expectation maximisation");
-  d.param("tolerance", &TrainGmm::tolerance)
-      .at_least(0)
-      .doc("it ends when the log-likelihood gains no more than this in an iteration, a frame");
+  describe_em(d, "a component");
 }
 
 Track GmmResponsibilities::operator()(const Gmm& model, const Track& track) const {

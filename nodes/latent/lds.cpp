@@ -271,17 +271,10 @@ void describe(Description<TrainLds>& d) {
   d.input("tracks", "every run of measured frames is a sequence").output("model", "the system's matrices");
   d.param("latent_dimension", &TrainLds::latent_dimension).at_least(1).doc("of the state");
   d.param("covariance", &TrainLds::covariance).doc("of the observations' noise");
-  d.param("floor", &TrainLds::floor)
-      .positive()
-      .doc(
-          "least variance of the observations' noise in any direction, as a share of the frames' variance a dimension");
   d.param("state_floor", &TrainLds::state_floor)
       .positive()
       .doc("least variance of first states and of the states' noise; states start with variance 1");
-  d.param("iterations", &TrainLds::iterations).at_least(0).doc("limit of expectation maximisation");
-  d.param("tolerance", &TrainLds::tolerance)
-      .at_least(0)
-      .doc("it ends when the log-likelihood gains no more than this in an iteration, a frame");
+  describe_em(d, "the observations' noise");
 }
 
 SmoothLds::Out SmoothLds::operator()(const Lds& model, const Track& track, Context& context) const {
