@@ -21,19 +21,10 @@ Gpdm TrainGpdm::operator()(const Collected<Track>& tracks, Context& context) con
   TrainedLatents trained =
       train_latents(*this, "GPDM", {{"observations", std::move(data.frames), scaling}}, data.lengths, start, context);
   Gpdm model;
-  model.latents = std::move(trained.latents);
   model.lengths = std::move(data.lengths);
   model.names = tracks[0].names;
   model.observations = std::move(trained.processes[0]);
-  model.dynamics = std::move(trained.dynamics);
-  model.form = dynamics == LatentDynamics::difference ? DynamicsForm::difference : DynamicsForm::absolute;
-  model.back_constraint = std::move(trained.back_constraint);
-  model.dynamics_bias = trained.dynamics_weight;
-  model.first_variance = trained.first_variance;
-  model.log_likelihood = -trained.report.cost;
-  model.jitter = trained.jitter;
-  for (const double cost : trained.report.trace) model.trace.push_back(-cost);
-  model.ended = str(trained.report.reason);
+  trained.move_to(model);
   return model;
 }
 

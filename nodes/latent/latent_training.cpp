@@ -258,6 +258,7 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
   const Eigen::Index d = allowed_dimension(options.latent_dimension, streams);
   SgpdmProblem problem = problem_of(options, streams, frames, lengths, start(scaled, d));
   TrainedLatents trained;
+  trained.form = problem.form;
   trained.dynamics_weight = problem.dynamics_weight;
   SgpdmObjective objective(std::move(problem));
 

@@ -113,9 +113,25 @@ struct TrainedLatents {
   Eigen::MatrixXd latents, first_frames;  ///< N × d; the first stream, scaled
   std::vector<GaussianProcess> processes;
   std::optional<GaussianProcess> dynamics;
+  DynamicsForm form = DynamicsForm::absolute;
   std::optional<BackConstraint> back_constraint;
   double dynamics_weight = 1, first_variance = 1, jitter = 0;
   OptimiserReport report;
+
+  /// Moves all but the streams to a model of one or of two.
+  template <class Model>
+  void move_to(Model& model) {
+    model.latents = std::move(latents);
+    model.dynamics = std::move(dynamics);
+    model.form = form;
+    model.back_constraint = std::move(back_constraint);
+    model.dynamics_bias = dynamics_weight;
+    model.first_variance = first_variance;
+    model.log_likelihood = -report.cost;
+    model.jitter = jitter;
+    for (const double cost : report.trace) model.trace.push_back(-cost);
+    model.ended = str(report.reason);
+  }
 };
 /// `subject` ("state \"t\"") stands in messages. Throws std::invalid_argument if `fixed` names an unknown parameter.
 TrainedLatents train_latents(const LatentTraining& options, const std::string& subject,

@@ -74,20 +74,11 @@ Sgpdm TrainSgpdm::operator()(const StateData& data, Context& context) const {
   };
   TrainedLatents trained = train_latents(*this, "state \"" + data.label + "\"", streams, model.lengths, start, context);
 
-  model.latents = std::move(trained.latents);
   model.audio_frames = std::move(trained.first_frames);
   model.audio = std::move(trained.processes[0]);
   model.visual = std::move(trained.processes[1]);
-  model.dynamics = std::move(trained.dynamics);
-  model.form = dynamics == LatentDynamics::difference ? DynamicsForm::difference : DynamicsForm::absolute;
-  model.back_constraint = std::move(trained.back_constraint);
-  model.dynamics_bias = trained.dynamics_weight;
-  model.first_variance = trained.first_variance;
-  model.log_likelihood = -trained.report.cost;
   model.iterations = trained.report.iterations;
-  model.jitter = trained.jitter;
-  for (const double cost : trained.report.trace) model.trace.push_back(-cost);
-  model.ended = str(trained.report.reason);
+  trained.move_to(model);
   return model;
 }
 
