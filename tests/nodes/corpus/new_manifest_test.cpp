@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "nodes/corpus/manifest_file.h"
 #include "tests/temporary_folder.h"
+#include "tests/unprivileged.h"
 
 namespace talkgraph {
 namespace {
@@ -129,12 +129,10 @@ TEST_F(NewManifestTest, PassesOverWhatCannotBeListed) {
   const auto locked = folder.path() / "locked";
   std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
   std::filesystem::permissions(locked, std::filesystem::perms::none);
-  const auto user = geteuid();
-  if (user == 0) {
-    ASSERT_EQ(seteuid(65534), 0) << "nothing is locked for root";
-  }
-  const auto clips = NewManifest{}(folder.path());
-  ASSERT_EQ(seteuid(user), 0);
+  const auto clips = [&] {
+    const test::Unprivileged here;
+    return NewManifest{}(folder.path());
+  }();
   std::filesystem::permissions(locked, std::filesystem::perms::owner_all);
   ASSERT_EQ(clips.manifest["clips"].size(), 2u);
   EXPECT_FALSE(clips.manifest["clips"][1].contains("transcript"));
