@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace talkgraph {
 
 GpObjective::GpObjective(GpLikelihood& likelihood, Kernel kernel, const Eigen::MatrixXd& x, Eigen::MatrixXd inducing,
@@ -40,7 +42,7 @@ bool GpObjective::evaluate(const Eigen::VectorXd& parameters, double& cost, Eige
   try {
     cost = -log_likelihood(parameters, gradient);
     if (gradient) *gradient = -*gradient;
-    return true;
+    return std::isfinite(cost);
   } catch (const FactorisationError&) {
     return false;
   }

@@ -5,9 +5,7 @@
 #include <cmath>
 
 #include "nodes/latent/gp_objective.h"
-#include "nodes/latent/lbfgs.h"
 #include "nodes/latent/predictive.h"
-#include "nodes/latent/scg.h"
 #include "nodes/yardstick/stacked.h"
 
 namespace talkgraph {
@@ -18,17 +16,6 @@ namespace {
 Eigen::RowVectorXd deviations(const Eigen::MatrixXd& centred, const Eigen::RowVectorXd& mean) {
   const Eigen::RowVectorXd deviation = centred.colwise().stableNorm() / std::sqrt(static_cast<double>(centred.rows()));
   return (deviation.array() > 1e-10 * mean.array().abs()).select(deviation, 1.0);
-}
-
-/// Rows at even distances.
-Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count) {
-  const Eigen::ArrayXi rows = Eigen::ArrayXi::NullaryExpr(count, [&](Eigen::Index i) { return i * x.rows() / count; });
-  return x(rows, Eigen::all);
-}
-
-std::unique_ptr<Optimiser> optimiser_of(OptimiserKind kind) {
-  if (kind == OptimiserKind::lbfgs) return std::make_unique<Lbfgs>();
-  return std::make_unique<ScaledConjugateGradients>();
 }
 
 }  // namespace
@@ -73,12 +60,10 @@ GpRegression TrainGp::operator()(const Collected<Track>& audio, const Collected<
   const Eigen::RowVectorXd scale = deviations(y, mean);
   y.array().rowwise() /= scale.array();
 
-  const bool sparse = approximation != CovarianceApproximation::full && x.rows() > inducing;
-  const auto likelihood = make_likelihood(sparse ? approximation : CovarianceApproximation::full, training.lengths,
-                                          static_cast<Eigen::Index>(inducing));
-  GpObjective objective(*likelihood, kernel_of(kernel, x.cols()), x, spread(x, sparse ? inducing : 0), fix_inducing, y);
+  const auto [likelihood, start] = approximate_gp(approximation, x, training.lengths, inducing);
+  GpObjective objective(*likelihood, kernel_of(kernel, x.cols()), x, start, fix_inducing, y);
   Eigen::VectorXd parameters = objective.start();
-  const auto minimiser = optimiser_of(optimiser);
+  const auto minimiser = make_optimiser(optimiser);
   minimiser->iterations = iterations;
   minimiser->on_iteration = [&](int i, double) {
     context.check_cancelled();

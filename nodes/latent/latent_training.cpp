@@ -10,6 +10,7 @@
 #include "nodes/latent/compact.h"
 #include "nodes/latent/lbfgs.h"
 #include "nodes/latent/scg.h"
+#include "nodes/latent/sequences.h"
 #include "nodes/latent/sgpdm_objective.h"
 
 namespace talkgraph {
@@ -49,25 +50,6 @@ Eigen::Index allowed_dimension(int wanted, const std::vector<TrainingStream>& st
   return std::max<Eigen::Index>(1, d);
 }
 
-/// Rows at even distances.
-Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count) {
-  Eigen::MatrixXd chosen(count, x.cols());
-  for (Eigen::Index i = 0; i < count; ++i) chosen.row(i) = x.row(i * x.rows() / count);
-  return chosen;
-}
-
-/// All but each sequence's last row.
-Eigen::MatrixXd inputs_of_steps(const Eigen::MatrixXd& x, const Lengths& lengths) {
-  Eigen::MatrixXd in(x.rows() - static_cast<Eigen::Index>(lengths.size()), x.cols());
-  Eigen::Index from = 0, to = 0;
-  for (const auto length : lengths) {
-    in.middleRows(to, length - 1) = x.middleRows(from, length - 1);
-    from += length;
-    to += length - 1;
-  }
-  return in;
-}
-
 Lengths lengths_of_steps(Lengths lengths) {
   for (auto& length : lengths) --length;
   std::erase(lengths, 0);
@@ -76,12 +58,9 @@ Lengths lengths_of_steps(Lengths lengths) {
 
 GpStream stream_of(const LatentTraining& options, std::string name, Kernel kernel, const Eigen::MatrixXd& inputs,
                    const Lengths& lengths, double weight) {
-  const bool sparse = options.approximation != CovarianceApproximation::full && inputs.rows() > options.inducing;
   kernel.terms.push_back(WhiteTerm{std::max(options.noise, 2 * options.minimum_noise), options.minimum_noise});
-  return GpStream{
-      std::move(name), std::move(kernel), spread(inputs, sparse ? options.inducing : 0),
-      make_likelihood(sparse ? options.approximation : CovarianceApproximation::full, lengths, options.inducing),
-      weight};
+  auto [likelihood, inducing] = approximate_gp(options.approximation, inputs, lengths, options.inducing);
+  return {std::move(name), std::move(kernel), std::move(inducing), std::move(likelihood), weight};
 }
 
 std::optional<BackProjection> back_projection(const LatentTraining& options, const Eigen::MatrixXd& frames,
@@ -128,7 +107,7 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
   }
   problem.dynamics =
       stream_of(options, "dynamics", Kernel{{RbfTerm{0.1, options.dynamics_inverse_width}, LinearTerm{1}}},
-                inputs_of_steps(problem.latents, lengths), lengths_of_steps(lengths), problem.dynamics_weight);
+                steps_of(problem.latents, lengths).from, lengths_of_steps(lengths), problem.dynamics_weight);
   return problem;
 }
 
@@ -186,21 +165,12 @@ Key key_of(const std::string& subject, SgpdmObjective& objective, const LatentTr
   });
 }
 
-std::unique_ptr<Optimiser> optimiser_of(const LatentTraining& options) {
-  std::unique_ptr<Optimiser> optimiser;
-  if (options.optimiser == OptimiserKind::lbfgs)
-    optimiser = std::make_unique<Lbfgs>();
-  else
-    optimiser = std::make_unique<ScaledConjugateGradients>();
-  if (options.time_limit > 0) optimiser->seconds = options.time_limit;
-  return optimiser;
-}
-
 /// Runs the optimiser, first with the noise held, from the start or a checkpoint; `state` receives the end.
 void maximise(const LatentTraining& options, int iterations, SgpdmObjective& objective, Checkpoint& checkpoint,
               Context& context) {
   const auto started = std::chrono::steady_clock::now();
-  const auto optimiser = optimiser_of(options);
+  const auto optimiser = make_optimiser(options.optimiser);
+  if (options.time_limit > 0) optimiser->seconds = options.time_limit;
   optimiser->on_iteration = [&](int i, double) {
     checkpoint.save_now_and_then();
     if (context.cancelled()) checkpoint.save();
@@ -244,6 +214,24 @@ std::unique_ptr<GpLikelihood> make_likelihood(CovarianceApproximation approximat
       return std::make_unique<VariationalLikelihood>();
   }
   throw std::logic_error("no such approximation");
+}
+
+Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count) {
+  Eigen::MatrixXd chosen(count, x.cols());
+  for (Eigen::Index i = 0; i < count; ++i) chosen.row(i) = x.row(i * x.rows() / count);
+  return chosen;
+}
+
+ApproximateGp approximate_gp(CovarianceApproximation approximation, const Eigen::MatrixXd& x, const Lengths& lengths,
+                             Eigen::Index inducing) {
+  if (approximation == CovarianceApproximation::full || x.rows() <= inducing)
+    return {std::make_unique<FullLikelihood>(), Eigen::MatrixXd(0, x.cols())};
+  return {make_likelihood(approximation, lengths, inducing), spread(x, inducing)};
+}
+
+std::unique_ptr<Optimiser> make_optimiser(OptimiserKind kind) {
+  if (kind == OptimiserKind::lbfgs) return std::make_unique<Lbfgs>();
+  return std::make_unique<ScaledConjugateGradients>();
 }
 
 TrainedLatents train_latents(const LatentTraining& options, const std::string& subject,

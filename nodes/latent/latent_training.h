@@ -141,6 +141,18 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
 /// The likelihood of N frames in sequences of these lengths; PITC has blocks of at most `most` frames.
 std::unique_ptr<GpLikelihood> make_likelihood(CovarianceApproximation approximation,
                                               const std::vector<std::int64_t>& lengths, Eigen::Index most);
+/// Rows at even distances, for inducing points to start from.
+Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count);
+
+struct ApproximateGp {
+  std::unique_ptr<GpLikelihood> likelihood;
+  Eigen::MatrixXd inducing;  ///< points to start from; none where the process is exact
+};
+/// Of inputs N × d in sequences of these lengths; exact if there are no more of them than `inducing` points.
+ApproximateGp approximate_gp(CovarianceApproximation approximation, const Eigen::MatrixXd& x,
+                             const std::vector<std::int64_t>& lengths, Eigen::Index inducing);
+
+std::unique_ptr<Optimiser> make_optimiser(OptimiserKind kind);
 
 template <class Node>
 void describe_training(Description<Node>& d) {

@@ -72,12 +72,6 @@ Eigen::VectorXd start_widths(const ObservedOutputs& y, const Eigen::MatrixXd& x)
   return (explained / std::max(explained.maxCoeff(), 1e-300)).cwiseMax(0.05);
 }
 
-Eigen::MatrixXd spread(const Eigen::MatrixXd& x, Eigen::Index count) {
-  Eigen::MatrixXd chosen(count, x.cols());
-  for (Eigen::Index i = 0; i < count; ++i) chosen.row(i) = x.row(i * x.rows() / count);
-  return chosen;
-}
-
 struct Relevance {
   std::vector<Eigen::Index> found;  ///< dimensions relevant to a stream, most relevant first
   Eigen::VectorXd audio, visual;    ///< of those

@@ -45,6 +45,19 @@ Sequences measured_runs(const Collected<Track>& tracks) {
   return s;
 }
 
+Steps steps_of(const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lengths) {
+  const Eigen::Index count = frames.rows() - static_cast<Eigen::Index>(lengths.size());
+  Steps steps{{count, frames.cols()}, {count, frames.cols()}};
+  Eigen::Index row = 0, at = 0;
+  for (const auto length : lengths) {
+    steps.from.middleRows(at, length - 1) = frames.middleRows(row, length - 1);
+    steps.to.middleRows(at, length - 1) = frames.middleRows(row + 1, length - 1);
+    row += length;
+    at += length - 1;
+  }
+  return steps;
+}
+
 void require_frames_of(const Track& track, Eigen::Index dimension, const char* model) {
   if (track.dimension() != dimension)
     throw std::runtime_error(

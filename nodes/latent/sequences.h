@@ -19,6 +19,12 @@ struct Sequences {
 /// measured frame.
 Sequences measured_runs(const Collected<Track>& tracks);
 
+/// Every frame that has one after it in its sequence, and that one.
+struct Steps {
+  Eigen::MatrixXd from, to;
+};
+Steps steps_of(const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lengths);
+
 /// Throws std::runtime_error if the track has another dimension, or a value that is not finite; `model` is what has
 /// that dimension ("the mixture").
 void require_frames_of(const Track& track, Eigen::Index dimension, const char* model);
