@@ -112,7 +112,7 @@ void add_parameter_rows(const std::vector<ParameterSpec>& specs, const std::stri
     if (!p.choices.empty()) kind = fmt::format("`{}`", fmt::join(p.choices, "`, `"));
     out += fmt::format("| `{}{}` | {} | {} | {} | {} | {} |\n", prefix, p.name, kind, escaped(p.unit), limits(p.range),
                        p.required ? "required" : "`" + p.initial.dump() + "`", escaped(p.doc));
-    add_parameter_rows(p.members, prefix + p.name + ".", out);
+    add_parameter_rows(p.members, prefix + p.name + (p.type == "object" ? "." : "[]."), out);
   }
 }
 

@@ -13,6 +13,15 @@ std::string join(const std::vector<std::string>& words) {
   return all;
 }
 
+/// What a struct's members are where a graph leaves them out: what the owner of the struct gives them, if it does.
+void set_initials(std::vector<ParameterSpec>& members, const Json& owner) {
+  if (!owner.is_object()) return;
+  for (auto& member : members) {
+    member.initial = owner.at(member.name);
+    set_initials(member.members, member.initial);
+  }
+}
+
 }  // namespace
 
 void complain_type(const LocatedJson& json, std::string_view expected, const std::string& subject,
@@ -126,6 +135,7 @@ ParameterSpec& add(std::vector<ParameterSpec>& specs, ParameterSpec spec, std::s
   spec.name = std::move(name);
   spec.offset = static_cast<const std::byte*>(value) - static_cast<const std::byte*>(owner);
   spec.initial = spec.write(value);
+  set_initials(spec.members, spec.initial);
   return specs.emplace_back(std::move(spec));
 }
 

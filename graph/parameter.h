@@ -58,7 +58,7 @@ struct ParameterSpec {
   bool required = false;
   Range range;
   std::vector<std::string> choices;    ///< of an enum
-  std::vector<ParameterSpec> members;  ///< of a nested struct
+  std::vector<ParameterSpec> members;  ///< of a nested struct, or of each in a list of them
   std::ptrdiff_t offset = 0;           ///< of the parameter in its struct, bytes
   /// Reads the parameter; complaints start with `subject` ("node \"mfcc\": parameter \"filters\"").
   void (*read)(void* parameter, const LocatedJson&, const Range&, const std::string& subject, Diagnostics&) = nullptr;
@@ -132,6 +132,15 @@ std::vector<std::string> parameter_choices() {
   else if constexpr (is_std_vector<T>::value || is_std_optional<T>::value)
     return parameter_choices<typename T::value_type>();
   return names;
+}
+
+template <class T>
+std::vector<ParameterSpec> parameter_members() {
+  if constexpr (is_std_vector<T>::value || is_std_optional<T>::value)
+    return parameter_members<typename T::value_type>();
+  else if constexpr (std::is_class_v<T>)
+    if constexpr (requires(Parameters<T> & p) { parameters(p); }) return struct_parameters<T>();
+  return {};
 }
 
 template <class T>
@@ -219,8 +228,7 @@ ParameterSpec spec_of_type() {
   ParameterSpec spec;
   spec.type = parameter_type<T>();
   spec.choices = parameter_choices<T>();
-  if constexpr (std::is_class_v<T>)
-    if constexpr (requires(Parameters<T> & p) { parameters(p); }) spec.members = struct_parameters<T>();
+  spec.members = parameter_members<T>();
   spec.read = [](void* value, const LocatedJson& json, const Range& range, const std::string& subject,
                  Diagnostics& diagnostics) {
     read_parameter(json, *static_cast<T*>(value), range, subject, diagnostics);

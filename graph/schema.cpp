@@ -25,15 +25,15 @@ void set_range(Json& schema, const Range& range) {
 }
 
 Json parameters_schema(const std::vector<ParameterSpec>& specs);
+Json given_schema(const std::string& type, const ParameterSpec& spec);
 
 /// Of a value written out; `type` as in ParameterSpec.
 Json value_schema(const std::string& type, const ParameterSpec& spec) {
   const std::string list = "list of ";
-  if (type.starts_with(list)) return {{"type", "array"}, {"items", value_schema(type.substr(list.size()), spec)}};
+  if (type.starts_with(list)) return {{"type", "array"}, {"items", given_schema(type.substr(list.size()), spec)}};
   if (type == "boolean") return {{"type", "boolean"}};
   if (type == "choice") return {{"enum", spec.choices}};
-  if (type == "object")  // the members of a list's objects are not told here; reading the graph checks them
-    return spec.members.empty() ? Json{{"type", "object"}} : parameters_schema(spec.members);
+  if (type == "object") return parameters_schema(spec.members);
   if (type == "graph") return object({{"graph", text("a graph file")}, {"params", object_of(true)}}, {"graph"});
   if (type == "ratio" || type == "integer" || type == "number") {
     Json number = {{"type", type == "ratio" ? "number" : type}};
@@ -43,20 +43,23 @@ Json value_schema(const std::string& type, const ParameterSpec& spec) {
   return {{"type", "string"}};
 }
 
-/// A parameter: its value, or the name of a graph's parameter. A limit of numbers does not bind texts, nor a pattern of
+/// Of a value written out, or the name of a graph's parameter. A limit of numbers does not bind texts, nor a pattern of
 /// texts numbers, so one schema holds both and a validator can say which limit was passed.
+Json given_schema(const std::string& type, const ParameterSpec& spec) {
+  Json out = value_schema(type, spec);
+  if (type == "choice") return {{"anyOf", {std::move(out), refer("parameter")}}};
+  if (out["type"] == "string") return out;
+  out["type"] = {out["type"], "string"};
+  if (type == "ratio")
+    out["pattern"] = R"(^(\$\{[^}]+\}|[-+]?\d+(\.\d+)?(/\d+)?)$)";
+  else if (type != "graph")
+    out["pattern"] = parameter_pattern;
+  return out;
+}
+
 Json parameter_schema(const ParameterSpec& spec) {
-  Json out = value_schema(spec.type, spec);
-  if (spec.type == "choice") {
-    out = {{"anyOf", {std::move(out), refer("parameter")}}};
-  } else if (out["type"] != "string") {
-    out["type"] = {out["type"], "string"};
-    if (spec.type == "ratio")
-      out["pattern"] = R"(^(\$\{[^}]+\}|[-+]?\d+(\.\d+)?(/\d+)?)$)";
-    else if (spec.type != "graph")
-      out["pattern"] = parameter_pattern;
-    if (spec.initial.is_null() && !spec.required) out["type"].push_back("null");
-  }
+  Json out = given_schema(spec.type, spec);
+  if (spec.initial.is_null() && !spec.required && out.value("type", Json()).is_array()) out["type"].push_back("null");
   std::string doc = spec.doc;
   if (!spec.unit.empty()) doc += fmt::format("{}[{}]", doc.empty() ? "" : " ", spec.unit);
   if (!doc.empty()) out["description"] = doc;

@@ -15,18 +15,21 @@ Json content_of(const Json& path) {
   return name.empty() ? Json() : Json(file_key(name).str());
 }
 
+Json canonical(const Json& params, const std::vector<ParameterSpec>& specs);
+
+Json canonical(const Json& value, const ParameterSpec& spec) {
+  if (spec.type.ends_with("path")) return content_of(value);
+  if (spec.members.empty()) return value;
+  if (value.is_object()) return canonical(value, spec.members);
+  Json all = value;
+  for (auto& one : all) one = canonical(one, spec);
+  return all;
+}
+
 /// Paths give way to what lies there.
 Json canonical(const Json& params, const std::vector<ParameterSpec>& specs) {
   Json out = Json::object();
-  for (const auto& spec : specs) {
-    const Json value = params.value(spec.name, Json());
-    if (spec.type.ends_with("path"))
-      out[spec.name] = content_of(value);
-    else if (!spec.members.empty() && value.is_object())
-      out[spec.name] = canonical(value, spec.members);
-    else
-      out[spec.name] = value;
-  }
+  for (const auto& spec : specs) out[spec.name] = canonical(params.value(spec.name, Json()), spec);
   return out;
 }
 

@@ -72,6 +72,12 @@ TEST(Reference, PagesAreUpToDate) {
     EXPECT_TRUE(pages.contains(entry.path().filename().string())) << entry.path() << ": no such family, remove it";
 }
 
+TEST(Reference, ListsTheMembersOfStructsAndOfListsOfThem) {
+  const auto pages = reference_pages(all_nodes());
+  EXPECT_THAT(pages.at("latent.md"), HasSubstr("| `kernel[].variance` | number |  | above 0 | `1.0` |"));
+  EXPECT_THAT(pages.at("voice.md"), HasSubstr("| `voice.pitch` | number |"));
+}
+
 TEST(Examples, AreSound) {
   const Registry registry = all_nodes();
   for (const auto& name : registry.names()) {

@@ -95,6 +95,22 @@ TEST_F(Schema, FindsWhatIsWrong) {
   EXPECT_THAT(complaints_of(R"({ "outputs": {} })"), HasSubstr("'nodes' is a required property"));
 }
 
+TEST_F(Schema, FindsWhatIsWrongInLists) {
+  using testing::HasSubstr;
+  const auto complaints_of_kernel = [&](const std::string& terms) {
+    return complaints_of(R"({ "nodes": { "g": { "type": "latent.gp", "in": { "audio": "a", "visual": "v" },
+        "params": { "kernel": )" +
+                         terms + " } } } }");
+  };
+  EXPECT_EQ(complaints_of_kernel(R"([{ "kind": "linear" }, { "kind": "white", "variance": "${noise}" }, "${term}"])"),
+            "");
+  EXPECT_THAT(complaints_of_kernel(R"([{ "kind": "linar" }])"), HasSubstr("linar"));
+  EXPECT_THAT(complaints_of_kernel(R"([{ "kind": "rbf", "width": 1 }])"), HasSubstr("width"));
+  EXPECT_THAT(complaints_of_kernel(R"([{ "kind": "rbf", "variance": -1 }])"), HasSubstr("-1"));
+  EXPECT_THAT(complaints_of_kernel(R"([{ "variance": 1 }])"), HasSubstr("'kind' is a required property"));
+  EXPECT_THAT(complaints_of_kernel(R"(["white"])"), HasSubstr("white"));
+}
+
 TEST_F(Schema, OfExperimentsFindsWhatIsWrong) {
   using testing::HasSubstr;
   const std::string schema = folder_.write("experiment.schema.json", experiment_schema().dump());

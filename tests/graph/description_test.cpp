@@ -82,6 +82,28 @@ void describe(Description<Note>& d) {
   d.input("value").output("size");
 }
 
+struct Tone {
+  double pitch = 440;
+  Sign sign = Sign::plus;
+};
+void parameters(Parameters<Tone>& p) {
+  p.param("pitch", &Tone::pitch).positive();
+  p.param("sign", &Tone::sign).required();
+}
+
+struct Chord {
+  std::vector<Tone> tones = {{220, Sign::plus}, {330, Sign::minus}};
+  Tone root = {110, Sign::minus};
+  std::optional<Tone> bass;
+  Number operator()() const { return {}; }
+};
+void describe(Description<Chord>& d) {
+  d.type("test.chord").summary("sounds").output("sound");
+  d.param("tones", &Chord::tones);
+  d.param("root", &Chord::root);
+  d.param("bass", &Chord::bass);
+}
+
 LocatedJson json(const std::string& text, Diagnostics& diagnostics) {
   return *parse_json(std::make_shared<SourceText>(SourceText{"test.json", text}), diagnostics);
 }
@@ -161,6 +183,22 @@ TEST(Description, ReportsEveryBadParameterWithItsPlace) {
   EXPECT_NE(d.str().find("test.json:2:2"), std::string::npos);
   EXPECT_NE(d.str().find("did you mean \"sign\"?"), std::string::npos);
   EXPECT_NE(d.str().find("did you mean \"plus\"?"), std::string::npos);
+}
+
+TEST(Description, TellsTheMembersOfStructsAndOfListsOfThem) {
+  Registry r;
+  r.add<Chord>();
+  const auto& specs = r.find("test.chord")->parameters;
+  for (const auto& spec : specs) {
+    ASSERT_EQ(spec.members.size(), 2u) << spec.name;
+    EXPECT_EQ(spec.members[0].name, "pitch") << spec.name;
+    EXPECT_TRUE(spec.members[1].required) << spec.name;
+    EXPECT_EQ(spec.members[1].choices, (std::vector<std::string>{"plus", "minus"})) << spec.name;
+  }
+  EXPECT_EQ(specs[0].members[0].initial, 440) << "of a tone that a graph adds";
+  EXPECT_EQ(specs[1].members[0].initial, 110) << "the node's, which stays where a graph leaves it out";
+  EXPECT_EQ(specs[1].members[1].initial, "minus");
+  EXPECT_EQ(specs[2].members[0].initial, 440);
 }
 
 TEST(Description, CollectsOptionalsAndSeveralOutputs) {

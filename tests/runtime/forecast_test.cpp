@@ -193,6 +193,33 @@ TEST(Recipe, NamesWhatCountsAndNothingElse) {
   EXPECT_NE(of("a", 1, 1), of("a", 1, 2)) << "a map draws random numbers";
 }
 
+struct Sheet {
+  FilePath file;
+};
+void parameters(Parameters<Sheet>& p) { p.param("file", &Sheet::file); }
+
+struct Play {
+  std::vector<Sheet> sheets;
+  Mark operator()() const { return {}; }
+};
+void describe(Description<Play>& d) {
+  d.type("test.play").summary("plays what is written").output("out");
+  d.param("sheets", &Play::sheets);
+}
+
+TEST(Recipe, HoldsWhatLiesInFilesThatAListOfStructsNames) {
+  Registry registry;
+  registry.add<Play>();
+  const test::TemporaryFolder folder;
+  const auto of = [&](const std::string& file) {
+    GraphBuilder b(registry);
+    b.add("play", "test.play", {}, {{"sheets", {{{"file", file}}}}});
+    return recipe(b.graph, 0);
+  };
+  EXPECT_EQ(of(folder.write("a", "one")), of(folder.write("b", "one")));
+  EXPECT_NE(of(folder.write("a", "one")), of(folder.write("a", "two")));
+}
+
 TEST(Key, OfFilesFollowsTheirContent) {
   const test::TemporaryFolder folder;
   const auto a = file_key(folder.write("a/x", "one"));
