@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "nodes/latent/negative.h"
+
 namespace talkgraph {
 
 namespace {
@@ -60,13 +62,7 @@ double BayesianObjective::bound(const Eigen::VectorXd& p, Eigen::VectorXd* gradi
 }
 
 bool BayesianObjective::evaluate(const Eigen::VectorXd& p, double& cost, Eigen::VectorXd* gradient) {
-  try {
-    cost = -bound(p, gradient);
-    if (gradient) *gradient = -*gradient;
-    return std::isfinite(cost);
-  } catch (const FactorisationError&) {
-    return false;
-  }
+  return evaluate_negative([&] { return bound(p, gradient); }, cost, gradient);
 }
 
 GaussianRows BayesianObjective::posterior(const Eigen::VectorXd& p) const {

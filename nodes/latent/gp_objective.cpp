@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include "nodes/latent/negative.h"
 
 namespace talkgraph {
 
@@ -39,13 +39,7 @@ double GpObjective::log_likelihood(const Eigen::VectorXd& parameters, Eigen::Vec
 }
 
 bool GpObjective::evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) {
-  try {
-    cost = -log_likelihood(parameters, gradient);
-    if (gradient) *gradient = -*gradient;
-    return std::isfinite(cost);
-  } catch (const FactorisationError&) {
-    return false;
-  }
+  return evaluate_negative([&] { return log_likelihood(parameters, gradient); }, cost, gradient);
 }
 
 std::string GpObjective::name(Eigen::Index parameter) const {

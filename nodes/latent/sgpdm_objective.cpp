@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "nodes/latent/negative.h"
+
 namespace talkgraph {
 
 SgpdmObjective::SgpdmObjective(SgpdmProblem problem) : problem_(std::move(problem)) {
@@ -233,13 +235,7 @@ double SgpdmObjective::log_likelihood(const Eigen::VectorXd& p, Eigen::VectorXd*
 }
 
 bool SgpdmObjective::evaluate(const Eigen::VectorXd& p, double& cost, Eigen::VectorXd* gradient) {
-  try {
-    cost = -log_likelihood(p, gradient);
-    if (gradient) *gradient = -*gradient;
-    return std::isfinite(cost);
-  } catch (const FactorisationError&) {
-    return false;
-  }
+  return evaluate_negative([&] { return log_likelihood(p, gradient); }, cost, gradient);
 }
 
 Eigen::MatrixXd SgpdmObjective::latents(const Eigen::VectorXd& p) {
