@@ -60,9 +60,10 @@ void Cholesky::compute(const Eigen::MatrixXd& matrix, double jitter, const char*
   refuse(matrix, what);
 }
 
-void Cholesky::add_jitter_gradient(Eigen::Ref<Eigen::MatrixXd> derivative) const {
-  const double trace = derivative.trace();
-  derivative.diagonal().array() += jitter_ * trace / static_cast<double>(derivative.rows());
+double Cholesky::add_jitter_gradient(Eigen::Ref<Eigen::MatrixXd> derivative) const {
+  const double share = jitter_ * derivative.trace() / static_cast<double>(derivative.rows());
+  derivative.diagonal().array() += share;
+  return share;
 }
 
 }  // namespace talkgraph

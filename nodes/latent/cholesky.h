@@ -25,8 +25,9 @@ class Cholesky {
   /// The share that was added.
   double jitter() const { return jitter_; }
   double log_determinant() const { return 2 * factor_.diagonal().array().log().sum(); }
-  /// Turns the derivative by what was factorised into that by the matrix it was made of, jitter included.
-  void add_jitter_gradient(Eigen::Ref<Eigen::MatrixXd> derivative) const;
+  /// Turns the derivative by what was factorised into that by the matrix it was made of, jitter included; returns
+  /// what it adds to the diagonal.
+  double add_jitter_gradient(Eigen::Ref<Eigen::MatrixXd> derivative) const;
 
  private:
   bool factorise(const Eigen::MatrixXd& matrix);

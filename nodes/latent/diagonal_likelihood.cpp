@@ -1,17 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "nodes/latent/gp_likelihood.h"
 
 namespace talkgraph {
-
-namespace {
-
-// Column by column: Eigen's product with a diagonal matrix takes twice as long.
-void scale_rows(const Eigen::VectorXd& factors, const ConstMatrix& m, MatrixView scaled) {
-  for (Eigen::Index c = 0; c < m.cols(); ++c) scaled.col(c) = m.col(c).cwiseProduct(factors);
-}
-
-}  // namespace
 
 const std::vector<Eigen::Index>& DiagonalLikelihood::lengths(Eigen::Index n) {
   constexpr Eigen::Index most = 96;  // a few matrices of as many rows stay in the cache; whole vectors of 8
@@ -24,38 +17,35 @@ const std::vector<Eigen::Index>& DiagonalLikelihood::lengths(Eigen::Index n) {
 double DiagonalLikelihood::condition(const Kernel& kernel, const ConstMatrix& x, Block& block) {
   block.conditional.resize(block.n);
   diagonal(kernel, x, block.conditional);
-  block.conditional = (block.conditional - block.v.rowwise().squaredNorm()).cwiseMax(0);
-  const double outputs = static_cast<double>(block.outputs.cols());
+  for (Eigen::Index i = 0; i < block.n; ++i)
+    block.conditional[i] = std::max(block.conditional[i] - block.w.col(i).squaredNorm(), 0.0);
+  const double outputs = static_cast<double>(block.outputs.rows());
   const double added = outputs * noise(block.conditional, white_variance(kernel), block.lambda);
   if (!(block.lambda.array() > 0).all())
     throw FactorisationError(
         fmt::format("the noise of a frame is {}, but must be above 0: raise minimum_noise", block.lambda.minCoeff()));
   block.inverse_root = block.lambda.cwiseSqrt().cwiseInverse();
-  scale_rows(block.inverse_root, block.outputs, block.outputs);
+  unwhiten(block, block.w);
+  unwhiten(block, block.outputs);
   return added - 0.5 * outputs * block.lambda.array().log().sum();
 }
 
-void DiagonalLikelihood::whiten(const Block& block, MatrixView whitened) const {
-  scale_rows(block.inverse_root, block.v, whitened);
+void DiagonalLikelihood::unwhiten(const Block& block, MatrixView m) const {
+  for (Eigen::Index i = 0; i < block.n; ++i) m.col(i) *= block.inverse_root[i];
 }
 
-void DiagonalLikelihood::add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const {
-  for (Eigen::Index c = 0; c < m.cols(); ++c) sum.col(c) += m.col(c).cwiseProduct(block.inverse_root);
-}
-
-bool DiagonalLikelihood::differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block,
-                                       const ConstMatrix& alpha, const ConstMatrix& w, const ConstMatrix& p,
-                                       MatrixView v_gradient, MatrixView x_gradient, VectorView logs) {
-  const double outputs = static_cast<double>(alpha.cols());
+bool DiagonalLikelihood::differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& rho,
+                                       const ConstMatrix& p, MatrixView t, MatrixView x_gradient, VectorView logs) {
+  const double outputs = static_cast<double>(rho.rows());
   Eigen::VectorXd& slope = block.slope;
-  slope = 0.5 * (alpha.rowwise().squaredNorm().array() -
-                 (outputs + w.cwiseProduct(p).rowwise().sum().array()) / block.lambda.array());
+  slope.resize(block.n);
+  for (Eigen::Index i = 0; i < block.n; ++i)
+    slope[i] = 0.5 * (rho.col(i).squaredNorm() - outputs - block.w.col(i).dot(p.col(i))) / block.lambda[i];
   white_gradient(kernel, noise_gradient(block.conditional, white_variance(kernel), outputs, slope), logs);
   if (slope.isZero(0)) return false;
   slope = (block.conditional.array() > 0).select(slope, 0);
   diagonal_gradient(kernel, x, slope, x_gradient, logs);
-  slope *= -2;
-  scale_rows(slope, block.v, v_gradient);
+  for (Eigen::Index i = 0; i < block.n; ++i) t.col(i) = (-2 * slope[i] * block.lambda[i]) * block.w.col(i);
   return true;
 }
 

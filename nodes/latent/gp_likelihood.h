@@ -68,9 +68,9 @@ class FullLikelihood : public GpLikelihood {
   Eigen::MatrixXd covariance_, whitened_, alpha_, inverse_, g_;
 };
 
-/// K = Q + Λ with Q = K_fu K_uu⁻¹ K_uf and Λ block diagonal, in whitened form: with Q = V Vᵀ, Λ = R Rᵀ and
-/// A = I + Vᵀ Λ⁻¹ V, ln|K| = ln|Λ| + ln|A|. O(N k²). The types derived from it say what Λ is.
-/// Frames are taken a block at a time, which is what stays in the processor's cache.
+/// K = Q + Λ with Q = K_fu K_uu⁻¹ K_uf and Λ block diagonal, in whitened form: with Q = Vᵀ V, Λ = R Rᵀ, W = V R⁻ᵀ and
+/// A = I + W Wᵀ, ln|K| = ln|Λ| + ln|A|. O(N k²). The types derived from it say what Λ is.
+/// Frames are columns, and taken a block at a time, which is what stays in the processor's cache.
 class LowRankLikelihood : public GpLikelihood {
  public:
   bool has_inducing() const final { return true; }
@@ -83,32 +83,29 @@ class LowRankLikelihood : public GpLikelihood {
   /// n frames, from `first`.
   struct Block {
     Eigen::Index first = 0, n = 0;
-    KernelMatrix cross;       // K_fu
-    Eigen::MatrixXd v;        // K_fu Lu⁻ᵀ
-    Eigen::MatrixXd outputs;  // R⁻¹Y
+    KernelMatrix cross;       // K_uf
+    Eigen::MatrixXd w;        // V = Lu⁻¹ K_uf, then W
+    Eigen::MatrixXd outputs;  // Yᵀ, then Yᵀ R⁻ᵀ
     // Where Λ is diagonal: the diagonals of k(X, X) − Q, Λ, R⁻¹ and the derivative by the first.
     Eigen::VectorXd conditional, lambda, inverse_root, slope;
-    // Where Λ is more: k(X, X), Λ, its factor, R⁻¹V and the derivative by Λ.
+    // Where Λ is more: k(X, X), Λ, its factor, and the derivatives by Λ and by what it is beside R, Rᵀ(dL/dΛ)R.
     KernelMatrix own;
-    Eigen::MatrixXd covariance, whitened, g;
+    Eigen::MatrixXd covariance, g, whitened_g;
     Cholesky factor;
   };
 
   /// Lengths of the blocks that N frames are taken in.
   virtual const std::vector<Eigen::Index>& lengths(Eigen::Index n) = 0;
-  /// Computes Λ of a block and brings its outputs, Y, to R⁻¹Y; returns −½ D ln|Λ| and whatever else the type adds to ln
-  /// p.
+  /// Computes Λ of a block and brings V to W and the outputs, Yᵀ, to Yᵀ R⁻ᵀ; returns −½ D ln|Λ| and whatever else the
+  /// type adds to ln p.
   virtual double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) = 0;
-  /// R⁻¹V.
-  virtual void whiten(const Block& block, MatrixView whitened) const = 0;
-  /// Adds R⁻ᵀ M to `sum`, using M up.
-  virtual void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const = 0;
-  /// From α = K⁻¹Y, W = R⁻¹V and P = −D W A⁻¹, which give the derivative by Λ, ½(ααᵀ − R⁻ᵀ(D I + P Wᵀ)R⁻¹), adds to
-  /// those by the block's inputs and the kernel's parameters. Where Λ depends on V, sets what V gets from it and
-  /// returns true.
-  virtual bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
-                             const ConstMatrix& w, const ConstMatrix& p, MatrixView v_gradient, MatrixView x_gradient,
-                             VectorView logs) = 0;
+  /// M ← M R⁻¹.
+  virtual void unwhiten(const Block& block, MatrixView m) const = 0;
+  /// From ρ = αᵀ R, α = K⁻¹Y, and P = −D A⁻¹ W, which give the derivative by Λ, ½R⁻ᵀ(ρᵀρ − D I − WᵀP)R⁻¹, adds to those
+  /// by the block's inputs and the kernel's parameters. Where Λ depends on V, sets `t` to what V gets from it, T R⁻¹,
+  /// and returns true.
+  virtual bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& rho,
+                             const ConstMatrix& p, MatrixView t, MatrixView x_gradient, VectorView logs) = 0;
 
  private:
   void divide(Eigen::Index n);
@@ -118,9 +115,10 @@ class LowRankLikelihood : public GpLikelihood {
   std::vector<Block> blocks_;
   KernelMatrix kuu_;
   Cholesky lu_, la_;
-  Eigen::MatrixXd a_, c_, b_;                                // A, La⁻¹ Σ (R⁻¹V)ᵀ R⁻¹Y, La⁻ᵀ c
-  Eigen::MatrixXd lu_inverse_, la_inverse_, a_inverse_, e_;  // −D A⁻¹; (dL/dV)ᵀ V
-  Eigen::MatrixXd w_, p_, residual_, alpha_, v_gradient_;    // of one block
+  Eigen::MatrixXd a_, c_, b_;                                // A, La⁻¹ W R⁻¹Y, La⁻ᵀ c
+  Eigen::MatrixXd lu_inverse_, la_inverse_, a_inverse_, e_;  // the third −D A⁻¹; (dL/dV) Vᵀ
+  Eigen::MatrixXd lu_inverse_transposed_, b_transposed_;     // products with what lies transposed in memory are slower
+  Eigen::MatrixXd cross_, rho_, p_, t_;                      // of one block
   Eigen::MatrixXd uu_gradient_;
 };
 
@@ -137,11 +135,9 @@ class DiagonalLikelihood : public LowRankLikelihood {
  private:
   const std::vector<Eigen::Index>& lengths(Eigen::Index n) final;
   double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) final;
-  void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const final;
-  void whiten(const Block& block, MatrixView whitened) const final;
-  bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
-                     const ConstMatrix& w, const ConstMatrix& p, MatrixView v_gradient, MatrixView x_gradient,
-                     VectorView logs) final;
+  void unwhiten(const Block& block, MatrixView m) const final;
+  bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& rho,
+                     const ConstMatrix& p, MatrixView t, MatrixView x_gradient, VectorView logs) final;
 
   std::vector<Eigen::Index> lengths_;
 };
@@ -177,11 +173,9 @@ class PitcLikelihood : public LowRankLikelihood {
  private:
   const std::vector<Eigen::Index>& lengths(Eigen::Index n) override;
   double condition(const Kernel& kernel, const ConstMatrix& x, Block& block) override;
-  void add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const override;
-  void whiten(const Block& block, MatrixView whitened) const override;
-  bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
-                     const ConstMatrix& w, const ConstMatrix& p, MatrixView v_gradient, MatrixView x_gradient,
-                     VectorView logs) override;
+  void unwhiten(const Block& block, MatrixView m) const override;
+  bool differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& rho,
+                     const ConstMatrix& p, MatrixView t, MatrixView x_gradient, VectorView logs) override;
 
   std::vector<Eigen::Index> lengths_;
 };

@@ -10,17 +10,6 @@
 
 namespace talkgraph {
 
-namespace {
-
-/// Adds Aᵀ B, known to be symmetric, to `sum`, of whose upper right quarter nothing is kept.
-void add_symmetric(const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& sum) {
-  const Eigen::Index half = sum.rows() / 2, rest = sum.rows() - half;
-  sum.topLeftCorner(half, half).noalias() += a.leftCols(half).transpose() * b.leftCols(half);
-  sum.bottomRows(rest).noalias() += a.rightCols(rest).transpose() * b;
-}
-
-}  // namespace
-
 void LowRankLikelihood::divide(Eigen::Index n) {
   const auto& sizes = lengths(n);
   blocks_.resize(sizes.size());
@@ -31,11 +20,9 @@ void LowRankLikelihood::divide(Eigen::Index n) {
     first += sizes[i];
     most = std::max(most, sizes[i]);
   }
-  w_.resize(most, a_.cols());
-  p_.resize(most, a_.cols());
-  residual_.resize(most, c_.cols());
-  alpha_.resize(most, c_.cols());
-  v_gradient_.resize(most, a_.cols());
+  rho_.resize(c_.cols(), most);
+  p_.resize(a_.rows(), most);
+  t_.resize(a_.rows(), most);
 }
 
 /// Returns −½ D ln|Λ| and what else the type adds.
@@ -50,23 +37,23 @@ double LowRankLikelihood::factorise(const Kernel& kernel, const ConstMatrix& x, 
   const Eigen::Index k = u.rows();
   lu_.compute(kuu_.compute(kernel, u, u), 0, "the covariance of the inducing points");
   note(lu_);
+  invert_lower(lu_.factor(), lu_inverse_);
   a_.setIdentity(k, k);
   c_.setZero(k, y.cols());
   divide(x.rows());
   double value = 0;
   for (Block& block : blocks_) {
     const auto inputs = x.middleRows(block.first, block.n);
-    block.cross.compute(kernel, inputs, u, block.v);
-    solve_transposed_right(lu_.factor(), block.v);
-    block.outputs = y.middleRows(block.first, block.n);
+    block.cross.compute(kernel, u, inputs, cross_);
+    block.w.resize(k, block.n);
+    solve_left(lu_.factor(), lu_inverse_, cross_, block.w);
+    block.outputs = y.middleRows(block.first, block.n).transpose();
     value += condition(kernel, inputs, block);
-    MatrixView w = w_.topRows(block.n);
-    whiten(block, w);
-    a_.selfadjointView<Eigen::Lower>().rankUpdate(w.transpose());
-    c_.noalias() += w.transpose() * block.outputs;
+    add_lower(block.w, block.w, a_);
+    c_.noalias() += block.w * block.outputs.transpose();
   }
   a_.triangularView<Eigen::StrictlyUpper>() = a_.transpose();
-  la_.compute(a_, 0, "the inner matrix I + VᵀΛ⁻¹V");
+  la_.compute(a_, 0, "the inner matrix I + VΛ⁻¹Vᵀ");
   la_.factor().triangularView<Eigen::Lower>().solveInPlace(c_);
   b_ = c_;
   la_.factor().triangularView<Eigen::Lower>().transpose().solveInPlace(b_);
@@ -88,14 +75,13 @@ double LowRankLikelihood::evaluate(const Kernel& kernel, const ConstMatrix& x, c
   return value;
 }
 
-// Let V not depend on Λ: then dL/dV = α bᵀ − D Λ⁻¹V A⁻¹, b = Vᵀα. What reaches V by way of Λ is added. V reaches the
-// likelihood by V Vᵀ alone, so that K_uu has −½ Lu⁻ᵀ E Lu⁻¹ with E = (dL/dV)ᵀ V, to which the first part gives
+// Let V not depend on Λ: then dL/dV = (b ρ + P) R⁻¹, b = V α. What reaches V by way of Λ, T R⁻¹, is added. V reaches
+// the likelihood by Vᵀ V alone, so that K_uu has −½ Lu⁻ᵀ E Lu⁻¹ with E = (dL/dV) Vᵀ, to which the first part gives
 // b bᵀ − D(I − A⁻¹).
 // A is not below I, so that its inverse, of a norm of at most 1, is as good as solving with it.
 void LowRankLikelihood::add_gradient(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& u,
                                      GpGradient& gradient) {
   const double d = static_cast<double>(c_.cols());
-  invert_lower(lu_.factor(), lu_inverse_);
   invert_lower(la_.factor(), la_inverse_);
   a_inverse_.setZero(u.rows(), u.rows());
   a_inverse_.selfadjointView<Eigen::Lower>().rankUpdate(la_inverse_.transpose(), -d);
@@ -103,31 +89,31 @@ void LowRankLikelihood::add_gradient(const Kernel& kernel, const ConstMatrix& x,
   e_ = -a_inverse_;
   e_.diagonal().array() -= d;
   e_.selfadjointView<Eigen::Lower>().rankUpdate(b_);
+  lu_inverse_transposed_ = lu_inverse_.transpose();
+  b_transposed_ = b_.transpose();
   for (Block& block : blocks_) {
     const auto inputs = x.middleRows(block.first, block.n);
     MatrixView x_gradient = gradient.inputs.middleRows(block.first, block.n);
-    MatrixView w = w_.topRows(block.n), p = p_.topRows(block.n), v_gradient = v_gradient_.topRows(block.n);
-    MatrixView residual = residual_.topRows(block.n), alpha = alpha_.topRows(block.n);
-    whiten(block, w);
-    p.noalias() = w * a_inverse_;
-    residual = block.outputs;
-    residual.noalias() -= w * b_;
-    alpha.setZero();
-    add_unwhitened(block, residual, alpha);
-    gradient.outputs.middleRows(block.first, block.n) = -alpha;
-    if (differentiate(kernel, inputs, block, alpha, w, p, v_gradient, x_gradient, gradient.kernel))
-      add_symmetric(v_gradient, block.v, e_);
-    else
-      v_gradient.setZero();
-    add_unwhitened(block, p, v_gradient);
-    v_gradient.noalias() += alpha * b_.transpose();
-    multiply_right(lu_inverse_, v_gradient);
-    block.cross.gradient(kernel, inputs, u, v_gradient, x_gradient, gradient.inducing, gradient.kernel);
+    MatrixView rho = rho_.leftCols(block.n), p = p_.leftCols(block.n), t = t_.leftCols(block.n);
+    multiply(a_inverse_, block.w, p);
+    rho = block.outputs;
+    rho.noalias() -= b_transposed_ * block.w;
+    if (differentiate(kernel, inputs, block, rho, p, t, x_gradient, gradient.kernel)) {
+      add_lower(t, block.w, e_);
+      p += t;
+    }
+    p.noalias() += b_ * rho;
+    unwhiten(block, p);
+    unwhiten(block, rho);
+    gradient.outputs.middleRows(block.first, block.n) = -rho.transpose();
+    multiply_upper(lu_inverse_transposed_, p, t);
+    block.cross.gradient(kernel, u, inputs, t, gradient.inducing, x_gradient, gradient.kernel);
   }
   e_.triangularView<Eigen::StrictlyUpper>() = e_.transpose();
-  multiply_right(lu_inverse_, e_);
-  uu_gradient_ = -0.5 * e_.transpose();
-  multiply_right(lu_inverse_, uu_gradient_);
+  uu_gradient_.resize(u.rows(), u.rows());
+  multiply_upper(lu_inverse_transposed_, e_, uu_gradient_);
+  e_ = -0.5 * uu_gradient_.transpose();
+  multiply_upper(lu_inverse_transposed_, e_, uu_gradient_);
   lu_.add_jitter_gradient(uu_gradient_);
   kuu_.gradient(kernel, u, u, uu_gradient_, gradient.inducing, gradient.inducing, gradient.kernel);
 }

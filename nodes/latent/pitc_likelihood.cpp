@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "nodes/latent/gp_likelihood.h"
+#include "nodes/latent/triangular.h"
 
 namespace talkgraph {
 
@@ -20,42 +21,37 @@ const std::vector<Eigen::Index>& PitcLikelihood::lengths(Eigen::Index n) {
 
 double PitcLikelihood::condition(const Kernel& kernel, const ConstMatrix& x, Block& block) {
   block.covariance = block.own.compute(kernel, x, x);
-  block.covariance.noalias() -= block.v * block.v.transpose();
+  add_lower(-1, block.w, block.w, block.covariance);
   block.covariance.diagonal().array() += white_variance(kernel);
   block.factor.compute(block.covariance, 0, "PITC: the conditional covariance of a block");
   note(block.factor);
-  const auto lower = block.factor.factor().triangularView<Eigen::Lower>();
-  block.whitened = block.v;
-  lower.solveInPlace(block.whitened);
-  lower.solveInPlace(block.outputs);
-  return -0.5 * static_cast<double>(block.outputs.cols()) * block.factor.log_determinant();
+  solve_transposed_right(block.factor.factor(), block.w);
+  solve_transposed_right(block.factor.factor(), block.outputs);
+  return -0.5 * static_cast<double>(block.outputs.rows()) * block.factor.log_determinant();
 }
 
-void PitcLikelihood::whiten(const Block& block, MatrixView whitened) const { whitened = block.whitened; }
+void PitcLikelihood::unwhiten(const Block& block, MatrixView m) const { solve_right(block.factor.factor(), m); }
 
-void PitcLikelihood::add_unwhitened(const Block& block, MatrixView m, MatrixView sum) const {
-  block.factor.factor().triangularView<Eigen::Lower>().transpose().solveInPlace(m);
-  sum += m;
-}
-
-bool PitcLikelihood::differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& alpha,
-                                   const ConstMatrix& w, const ConstMatrix& p, MatrixView v_gradient,
-                                   MatrixView x_gradient, VectorView logs) {
-  const auto upper = block.factor.factor().triangularView<Eigen::Lower>().transpose();
-  Eigen::MatrixXd& g = block.g;
-  g.setIdentity(block.n, block.n);
-  g *= static_cast<double>(alpha.cols());
-  g.noalias() += p * w.transpose();
-  upper.solveInPlace(g);
+bool PitcLikelihood::differentiate(const Kernel& kernel, const ConstMatrix& x, Block& block, const ConstMatrix& rho,
+                                   const ConstMatrix& p, MatrixView t, MatrixView x_gradient, VectorView logs) {
+  const auto& factor = block.factor.factor();
+  Eigen::MatrixXd &g = block.g, &whitened = block.whitened_g;
+  whitened.setIdentity(block.n, block.n);
+  whitened *= -0.5 * static_cast<double>(rho.rows());
+  add_lower(-0.5, block.w, p, whitened);
+  add_lower(0.5, rho, rho, whitened);
+  whitened.triangularView<Eigen::StrictlyUpper>() = whitened.transpose();
+  g = whitened;
+  solve_right(factor, g);
   g.transposeInPlace();
-  upper.solveInPlace(g);
-  g *= -0.5;
-  g.noalias() += 0.5 * alpha * alpha.transpose();
+  solve_right(factor, g);
   g.triangularView<Eigen::StrictlyUpper>() = g.transpose();
-  block.factor.add_jitter_gradient(g);
+  if (const double jitter = block.factor.add_jitter_gradient(g); jitter != 0)
+    whitened.noalias() += jitter * factor.transpose() * factor;
   white_gradient(kernel, g.trace(), logs);
   block.own.gradient(kernel, x, x, g, x_gradient, x_gradient, logs);
-  v_gradient.noalias() = -2 * g * block.v;
+  whitened *= -2;
+  multiply(block.w, whitened, t);
   return true;
 }
 

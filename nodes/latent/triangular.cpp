@@ -1,15 +1,16 @@
 #include "nodes/latent/triangular.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 namespace talkgraph {
 
 namespace {
 
-constexpr Eigen::Index small = 32;
+constexpr Eigen::Index small = 24;  // rows that a product of OpenBLAS takes at a time
 
 /// B ← factor · B L with side "R", factor · L B with "L".
-void multiply(const char* side, double factor, const ConstMatrixBlock& l, MatrixBlock b) {
+void multiply_triangular(const char* side, double factor, const ConstMatrixBlock& l, MatrixBlock b) {
   const int rows = static_cast<int>(b.rows()), cols = static_cast<int>(b.cols());
   const int l_stride = static_cast<int>(l.outerStride()), b_stride = static_cast<int>(b.outerStride());
   if (b.size() > 0) dtrmm_(side, "L", "N", "N", &rows, &cols, &factor, l.data(), &l_stride, b.data(), &b_stride);
@@ -27,13 +28,25 @@ void invert_in_place(MatrixBlock l, double* memory) {
   }
   invert_in_place(l.topLeftCorner(half, half), memory);
   invert_in_place(l.bottomRightCorner(rest, rest), memory);
-  multiply("R", -1, l.topLeftCorner(half, half), l.bottomLeftCorner(rest, half));
-  multiply("L", 1, l.bottomRightCorner(rest, rest), l.bottomLeftCorner(rest, half));
+  multiply_triangular("R", -1, l.topLeftCorner(half, half), l.bottomLeftCorner(rest, half));
+  multiply_triangular("L", 1, l.bottomRightCorner(rest, rest), l.bottomLeftCorner(rest, half));
 }
 
 }  // namespace
 
-// OpenBLAS solves at half the speed of its products, which halving the matrix again and again turns most of it into.
+// OpenBLAS solves at half the speed of its products or less, which halving the matrix again and again turns most of it
+// into.
+void solve_right(const ConstMatrixBlock& l, MatrixBlock b) {
+  if (l.rows() <= small) {
+    l.triangularView<Eigen::Lower>().solveInPlace<Eigen::OnTheRight>(b);
+    return;
+  }
+  const Eigen::Index half = l.rows() / 2, rest = l.rows() - half;
+  solve_right(l.bottomRightCorner(rest, rest), b.rightCols(rest));
+  b.leftCols(half).noalias() -= b.rightCols(rest) * l.bottomLeftCorner(rest, half);
+  solve_right(l.topLeftCorner(half, half), b.leftCols(half));
+}
+
 void solve_transposed_right(const ConstMatrixBlock& l, MatrixBlock b) {
   if (l.rows() <= small) {
     l.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(b);
@@ -45,7 +58,45 @@ void solve_transposed_right(const ConstMatrixBlock& l, MatrixBlock b) {
   solve_transposed_right(l.bottomRightCorner(rest, rest), b.rightCols(rest));
 }
 
-void multiply_right(const Eigen::MatrixXd& l, MatrixBlock b) { multiply("R", 1, l, b); }
+// A few rows at a time: their products leave out most of what is nought or not wanted.
+void solve_left(const Eigen::MatrixXd& l, const Eigen::MatrixXd& inverse, MatrixBlock b, MatrixBlock x) {
+  for (Eigen::Index i = 0; i < l.rows(); i += small) {
+    const Eigen::Index rows = std::min(small, l.rows() - i);
+    if (i > 0) b.middleRows(i, rows).noalias() -= l.block(i, 0, rows, i) * x.topRows(i);
+    multiply(inverse.block(i, i, rows, rows), b.middleRows(i, rows), x.middleRows(i, rows));
+  }
+}
+
+// Eigen would write zeros first and add to them.
+void multiply(const ConstMatrixBlock& a, const ConstMatrixBlock& b, MatrixBlock product) {
+  const int rows = static_cast<int>(a.rows()), cols = static_cast<int>(b.cols()), inner = static_cast<int>(a.cols());
+  const int a_stride = static_cast<int>(a.outerStride()), b_stride = static_cast<int>(b.outerStride()),
+            stride = static_cast<int>(product.outerStride());
+  const double one = 1, zero = 0;
+  dgemm_("N", "N", &rows, &cols, &inner, &one, a.data(), &a_stride, b.data(), &b_stride, &zero, product.data(),
+         &stride);
+}
+
+void multiply_upper(const Eigen::MatrixXd& u, const ConstMatrixBlock& b, MatrixBlock product) {
+  for (Eigen::Index i = 0; i < u.rows(); i += small) {
+    const Eigen::Index rest = u.rows() - i, rows = std::min(small, rest);
+    multiply(u.block(i, i, rows, rest), b.bottomRows(rest), product.middleRows(i, rows));
+  }
+}
+
+void add_lower(const ConstMatrixBlock& a, const ConstMatrixBlock& b, Eigen::MatrixXd& sum) {
+  for (Eigen::Index i = 0; i < sum.rows(); i += small) {
+    const Eigen::Index rows = std::min(small, sum.rows() - i), cols = i + rows;
+    sum.block(i, 0, rows, cols).noalias() += a.middleRows(i, rows) * b.topRows(cols).transpose();
+  }
+}
+
+void add_lower(double factor, const ConstMatrixBlock& a, const ConstMatrixBlock& b, Eigen::MatrixXd& sum) {
+  for (Eigen::Index i = 0; i < sum.rows(); i += small) {
+    const Eigen::Index rows = std::min(small, sum.rows() - i), cols = i + rows;
+    sum.block(i, 0, rows, cols).noalias() += factor * a.middleCols(i, rows).transpose() * b.leftCols(cols);
+  }
+}
 
 void invert_lower(const Eigen::MatrixXd& l, Eigen::MatrixXd& inverse) {
   double memory[small * small];

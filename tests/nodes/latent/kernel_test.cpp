@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <limits>
 
@@ -110,16 +111,50 @@ TEST(Triangular, SolvesMultipliesAndInverts) {
     l.diagonal().array() = 2 + l.diagonal().array().abs();
     l.triangularView<Eigen::StrictlyLower>() = l / std::sqrt(n);
     const auto b = gaussian(12, n, 2);
-    Eigen::MatrixXd x = b, inverse;
+    const Eigen::MatrixXd right = b.transpose(), upper = l.transpose();
+    Eigen::MatrixXd x = b, inverse, used = right, product(n, 12);
     solve_transposed_right(l, x);
     EXPECT_TRUE((x * l.transpose()).isApprox(b, 1e-12));
     x = b;
-    multiply_right(l, x);
-    EXPECT_TRUE(x.isApprox(b * l, 1e-12));
+    solve_right(l, x);
+    EXPECT_TRUE((x * l).isApprox(b, 1e-12));
     invert_lower(l, inverse);
+    x.resize(n, 12);
+    solve_left(l, inverse, used, x);
+    EXPECT_TRUE((l * x).isApprox(right, 1e-12));
+    multiply_upper(upper, right, product);
+    EXPECT_TRUE(product.isApprox(upper * right, 1e-12));
+    multiply(l, right, product);
+    EXPECT_TRUE(product.isApprox(l * right, 1e-12));
     EXPECT_TRUE((inverse * l).isIdentity(1e-12));
     EXPECT_TRUE(inverse.isLowerTriangular(0));
   }
+}
+
+TEST(Triangular, AddsTheLowerTriangleOfAProduct) {
+  for (const Eigen::Index n : {1, 7, 33, 100}) {
+    const auto a = gaussian(n, 12, 1), b = gaussian(n, 12, 2), start = gaussian(n, n, 3);
+    const auto lower = [](const Eigen::MatrixXd& m) { return Eigen::MatrixXd(m.triangularView<Eigen::Lower>()); };
+    Eigen::MatrixXd sum = start;
+    add_lower(a, b, sum);
+    EXPECT_TRUE(lower(sum).isApprox(lower(start + a * b.transpose()), 1e-12));
+    add_lower(-2, a.transpose(), b.transpose(), sum);
+    EXPECT_TRUE(lower(sum).isApprox(lower(start - a * b.transpose()), 1e-12));
+  }
+}
+
+/// A factor of a nearly singular matrix.
+TEST(Triangular, SolvesAsWellAsSubstitution) {
+  const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(60, -2, 2);
+  Eigen::MatrixXd k = (-0.5 * (at.replicate(1, 60).rowwise() - at.transpose()).array().square() / 0.01).exp();
+  k.diagonal().array() += 1e-10;
+  const Eigen::MatrixXd l = k.llt().matrixL();
+  const auto expected = gaussian(60, 3, 1);
+  Eigen::MatrixXd inverse, b = l * expected, x(60, 3);
+  const Eigen::MatrixXd substituted = l.triangularView<Eigen::Lower>().solve(b);
+  invert_lower(l, inverse);
+  solve_left(l, inverse, b, x);
+  EXPECT_LT((x - expected).norm(), 10 * (substituted - expected).norm() + 1e-15);
 }
 
 /// Σ W∘k(A, B) + v·diag k(A, A) + white² as a function of A, B and the log parameters.
