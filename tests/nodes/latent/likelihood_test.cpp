@@ -41,14 +41,14 @@ TEST(Likelihood, IsTheTextbookDensityOfEveryKernelAndApproximation) {
 }
 
 TEST(Likelihood, GradientsAgreeWithDifferencesForEveryKernelAndApproximation) {
-  for (const auto& approximation : approximations(blocks))
+  for (const auto& approximation : approximations({3, 1, 2}))
     for (const auto& [name, kernel, inducing] : kernels()) {
       const auto likelihood = approximation.make();
       double worst = 0;
       for (std::uint64_t seed = 0; seed < 100; ++seed) {
-        LikelihoodCost cost(*likelihood, kernel, 8, 2, inducing, 3);
+        LikelihoodCost cost(*likelihood, kernel, 6, 2, inducing, 2);
         Eigen::VectorXd p = gaussian(cost.size(), 1, 1000 + seed);
-        p.segment(16, 2 * inducing) = apart(inducing, 2000 + seed).reshaped();
+        p.segment(12, 2 * inducing) = apart(inducing, 2000 + seed).reshaped();
         const Eigen::Index parameters = parameter_count(kernel);
         p.tail(parameters) = log_parameters(kernel) + 0.3 * p.tail(parameters);
         const auto check = check_gradient(cost, p);

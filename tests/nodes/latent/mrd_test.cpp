@@ -57,8 +57,8 @@ TEST(TrainMrd, FindsSharedAndPrivateDimensions) {
     TrainMrd node;
     node.iterations = 200;
     node.visual_only = VisualOnly::keep;
-    const auto out = trained(node, shared_and_private(120, seed));
-    EXPECT_EQ(out.dimensions.cells[0][0], 120);
+    const auto out = trained(node, shared_and_private(80, seed));
+    EXPECT_EQ(out.dimensions.cells[0][0], 80);
     EXPECT_EQ(out.dimensions.cells[0][1], 1) << "shared, seed " << seed;
     EXPECT_EQ(out.dimensions.cells[0][2], 1) << "audio, seed " << seed;
     EXPECT_EQ(out.dimensions.cells[0][3], 1) << "visual, seed " << seed;
@@ -78,7 +78,7 @@ TEST(TrainMrd, FindsTheDimensionOfOneModel) {
 TEST(TrainMrd, FindsThemInPartsToo) {
   TrainMrd node;
   node.batch = 40;
-  node.epochs = 600;
+  node.epochs = 400;
   const auto out = trained(node, shared_and_private(120, 100));
   EXPECT_EQ(out.dimensions.cells[0][1], 1);
   EXPECT_EQ(out.dimensions.cells[0][2], 1);

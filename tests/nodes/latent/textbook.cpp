@@ -38,7 +38,7 @@ double textbook_white(const Kernel& kernel) {
 
 double textbook_density(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& y) {
   const double n = static_cast<double>(y.rows()), d = static_cast<double>(y.cols());
-  const double log_determinant = covariance.eigenvalues().real().array().log().sum();
+  const double log_determinant = covariance.selfadjointView<Eigen::Lower>().eigenvalues().array().log().sum();
   return -0.5 * (n * d * std::log(2 * std::numbers::pi) + d * log_determinant +
                  (covariance.inverse() * y * y.transpose()).trace());
 }
