@@ -138,7 +138,7 @@ void require_dimension(const Kernel& kernel, Eigen::Index dimension) {
 }
 
 void KernelMatrix::add_rbf(double variance, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& values,
-                           Eigen::MatrixXd& sum) {
+                           MatrixView sum) {
   values.resize(a.rows(), b.rows());
   for (Eigen::Index j = 0; j < b.rows(); ++j) {
     point_ = b.row(j);
@@ -148,13 +148,14 @@ void KernelMatrix::add_rbf(double variance, const ConstMatrix& a, const ConstMat
 }
 
 const Eigen::MatrixXd& KernelMatrix::compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b) {
-  compute(kernel, a, b, value_);
+  value_.resize(a.rows(), b.rows());
+  compute(kernel, a, b, MatrixView(value_));
   return value_;
 }
 
-void KernelMatrix::compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& value) {
+void KernelMatrix::compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b, MatrixView value) {
   require_dimension(kernel, a.cols());
-  value.setConstant(a.rows(), b.rows(), bias_variance(kernel));
+  value.setConstant(bias_variance(kernel));
   rbf_.resize(kernel.terms.size());
   std::size_t index = 0;
   each(kernel, Overload{[&](const RbfTerm& t, Eigen::Index) {

@@ -43,8 +43,8 @@ class KernelMatrix {
   /// A is n × d, B is m × d; the result n × m.
   const Eigen::MatrixXd& compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b);
   const Eigen::MatrixXd& value() const { return value_; }
-  /// The same into a matrix of the caller's; value() is then left as it was.
-  void compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& value);
+  /// The same into a matrix of the caller's, n × m already; value() is then left as it was.
+  void compute(const Kernel& kernel, const ConstMatrix& a, const ConstMatrix& b, MatrixView value);
 
   /// Adds to the gradients with respect to A, B and the log parameters, given
   /// the derivative `g` with respect to the matrix. Takes the arguments of the
@@ -53,8 +53,7 @@ class KernelMatrix {
                 MatrixView a_gradient, MatrixView b_gradient, VectorView logs);
 
  private:
-  void add_rbf(double variance, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& values,
-               Eigen::MatrixXd& sum);
+  void add_rbf(double variance, const ConstMatrix& a, const ConstMatrix& b, Eigen::MatrixXd& values, MatrixView sum);
   double rbf_gradient(const Eigen::MatrixXd& values, const ConstMatrix& a, const ConstMatrix& b, const ConstMatrix& g,
                       MatrixView a_gradient, MatrixView b_gradient);
 

@@ -20,6 +20,7 @@ void LowRankLikelihood::divide(Eigen::Index n) {
     first += sizes[i];
     most = std::max(most, sizes[i]);
   }
+  cross_.resize(a_.rows(), most);
   rho_.resize(c_.cols(), most);
   p_.resize(a_.rows(), most);
   t_.resize(a_.rows(), most);
@@ -44,9 +45,10 @@ double LowRankLikelihood::factorise(const Kernel& kernel, const ConstMatrix& x, 
   double value = 0;
   for (Block& block : blocks_) {
     const auto inputs = x.middleRows(block.first, block.n);
-    block.cross.compute(kernel, u, inputs, cross_);
+    MatrixView cross = cross_.leftCols(block.n);
+    block.cross.compute(kernel, u, inputs, cross);
     block.w.resize(k, block.n);
-    solve_left(lu_.factor(), lu_inverse_, cross_, block.w);
+    solve_left(lu_.factor(), lu_inverse_, cross, block.w);
     block.outputs = y.middleRows(block.first, block.n).transpose();
     value += condition(kernel, inputs, block);
     add_lower(block.w, block.w, a_);

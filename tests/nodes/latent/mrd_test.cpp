@@ -78,7 +78,7 @@ TEST(TrainMrd, FindsTheDimensionOfOneModel) {
 TEST(TrainMrd, FindsThemInPartsToo) {
   TrainMrd node;
   node.batch = 40;
-  node.epochs = 400;
+  node.epochs = 600;
   const auto out = trained(node, shared_and_private(120, 100));
   EXPECT_EQ(out.dimensions.cells[0][1], 1);
   EXPECT_EQ(out.dimensions.cells[0][2], 1);
