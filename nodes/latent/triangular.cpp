@@ -16,6 +16,17 @@ void multiply_triangular(const char* side, double factor, const ConstMatrixBlock
   if (b.size() > 0) dtrmm_(side, "L", "N", "N", &rows, &cols, &factor, l.data(), &l_stride, b.data(), &b_stride);
 }
 
+/// C ← factor · A B + kept · C, A transposed with "T". Eigen would write zeros first, and copy what is small.
+void product(const char* transposed, double factor, const ConstMatrixBlock& a, const ConstMatrixBlock& b, double kept,
+             MatrixBlock c) {
+  const int rows = static_cast<int>(c.rows()), cols = static_cast<int>(c.cols()), inner = static_cast<int>(b.rows());
+  const int a_stride = static_cast<int>(a.outerStride()), b_stride = static_cast<int>(b.outerStride()),
+            c_stride = static_cast<int>(c.outerStride());
+  if (inner > 0)
+    dgemm_(transposed, "N", &rows, &cols, &inner, &factor, a.data(), &a_stride, b.data(), &b_stride, &kept, c.data(),
+           &c_stride);
+}
+
 /// Of the lower triangle of `l`, which holds a factor.
 void invert_in_place(MatrixBlock l, double* memory) {
   const Eigen::Index n = l.rows(), half = n / 2, rest = n - half;
@@ -67,15 +78,7 @@ void solve_left(const Eigen::MatrixXd& l, const Eigen::MatrixXd& inverse, Matrix
   }
 }
 
-// Eigen would write zeros first and add to them.
-void multiply(const ConstMatrixBlock& a, const ConstMatrixBlock& b, MatrixBlock product) {
-  const int rows = static_cast<int>(a.rows()), cols = static_cast<int>(b.cols()), inner = static_cast<int>(a.cols());
-  const int a_stride = static_cast<int>(a.outerStride()), b_stride = static_cast<int>(b.outerStride()),
-            stride = static_cast<int>(product.outerStride());
-  const double one = 1, zero = 0;
-  dgemm_("N", "N", &rows, &cols, &inner, &one, a.data(), &a_stride, b.data(), &b_stride, &zero, product.data(),
-         &stride);
-}
+void multiply(const ConstMatrixBlock& a, const ConstMatrixBlock& b, MatrixBlock c) { product("N", 1, a, b, 0, c); }
 
 void multiply_upper(const Eigen::MatrixXd& u, const ConstMatrixBlock& b, MatrixBlock product) {
   for (Eigen::Index i = 0; i < u.rows(); i += small) {
@@ -94,7 +97,7 @@ void add_lower(const ConstMatrixBlock& a, const ConstMatrixBlock& b, Eigen::Matr
 void add_lower(double factor, const ConstMatrixBlock& a, const ConstMatrixBlock& b, Eigen::MatrixXd& sum) {
   for (Eigen::Index i = 0; i < sum.rows(); i += small) {
     const Eigen::Index rows = std::min(small, sum.rows() - i), cols = i + rows;
-    sum.block(i, 0, rows, cols).noalias() += factor * a.middleCols(i, rows).transpose() * b.leftCols(cols);
+    product("T", factor, a.middleCols(i, rows), b.leftCols(cols), 1, sum.block(i, 0, rows, cols));
   }
 }
 
