@@ -148,13 +148,15 @@ class Checkpoint {
   std::chrono::steady_clock::time_point saved_ = std::chrono::steady_clock::now();
 };
 
-/// Of the start of an optimisation, which stands for all that it depends on.
+/// Of the start of an optimisation, which stands for all that its steps depend on, and of where it ends.
 Key key_of(const std::string& subject, SgpdmObjective& objective, const LatentTraining& options) {
   std::string what = subject;
   Eigen::VectorXd start = objective.start(), gradient;
   double cost = 0;
   objective.evaluate(start, cost, &gradient);
-  std::int64_t hold = options.hold_noise, optimiser = static_cast<std::int64_t>(options.optimiser);
+  std::int64_t hold = options.hold_noise, iterations = options.iterations;
+  std::int64_t optimiser = static_cast<std::int64_t>(options.optimiser);
+  double time_limit = options.time_limit;
   return content_key([&](Archive& ar) {
     ar("subject", what);
     ar("start", start);
@@ -162,6 +164,8 @@ Key key_of(const std::string& subject, SgpdmObjective& objective, const LatentTr
     ar("gradient", gradient);
     ar("hold", hold);
     ar("optimiser", optimiser);
+    ar("iterations", iterations);
+    ar("time_limit", time_limit);
   });
 }
 

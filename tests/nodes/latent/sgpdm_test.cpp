@@ -173,6 +173,26 @@ TEST(TrainSgpdm, GoesOnWhereItWasStopped) {
   }
 }
 
+TEST(TrainSgpdm, GoesOnOnlyFromACheckpointOfTheSameTraining) {
+  const auto data = wavy(8, 4);
+  const test::TemporaryFolder folder;
+  TrainSgpdm few, many;
+  few.iterations = 5;
+  many.iterations = 40;
+  Context context;
+  const Sgpdm expected = few(data, context);
+  few.checkpoint = many.checkpoint = folder.file("checkpoints");
+  std::atomic<bool> cancel = false;
+  Context stopped;
+  stopped.cancel = &cancel;
+  stopped.on_progress = [&](double share) { cancel = share >= 0.5; };
+  EXPECT_THROW(many(data, stopped), Cancelled);
+  const Sgpdm model = few(data, context);
+  EXPECT_EQ(model.iterations, 5);
+  EXPECT_EQ(model.latents, expected.latents);
+  EXPECT_FALSE(std::filesystem::is_empty(many.checkpoint)) << "the longer training's checkpoint is gone";
+}
+
 TEST(TrainSgpdm, GivesTheSameBitsAgain) {
   const auto data = wavy(8, 4);
   Context context;
