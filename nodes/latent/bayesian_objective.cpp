@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "nodes/latent/negative.h"
-
 namespace talkgraph {
 
 namespace {
@@ -39,7 +37,7 @@ BayesianObjective::BayesianObjective(LatentPosterior latents, std::vector<Variat
   q_.set_zero(rows(), d_);
 }
 
-double BayesianObjective::bound(const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
+double BayesianObjective::compute(const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
   double value = -log_scale_ - latents_.compute(all_, free_mean(p), log_precision(p), q_.mean, q_.variance);
   Eigen::VectorXd unused;
   if (gradient) {
@@ -59,10 +57,6 @@ double BayesianObjective::bound(const Eigen::VectorXd& p, Eigen::VectorXd* gradi
   if (hold_noise_)
     for (std::size_t i = 0; i < streams_.size(); ++i) g[places_[i] + streams_[i].noise_place()] = 0;
   return value;
-}
-
-bool BayesianObjective::evaluate(const Eigen::VectorXd& p, double& cost, Eigen::VectorXd* gradient) {
-  return evaluate_negative([&] { return bound(p, gradient); }, cost, gradient);
 }
 
 GaussianRows BayesianObjective::posterior(const Eigen::VectorXd& p) const {

@@ -4,26 +4,23 @@
 #include <vector>
 
 #include "nodes/latent/latent_posterior.h"
-#include "nodes/latent/objective.h"
+#include "nodes/latent/maximand.h"
 #include "nodes/latent/variational_stream.h"
 
 namespace talkgraph {
 
-/// Negative variational bound of ln p of one or several streams over one latent space:
+/// Variational bound of ln p of one or several streams over one latent space:
 ///   Σ_streams (collapsed bound − N·Σ ln scale) − KL(q(X) ‖ p(X)).
 /// With one stream it is the Bayesian GPLVM (Titsias and Lawrence 2010), with several manifold relevance
 /// determination (Damianou, Ek, Titsias and Lawrence 2012). Parameters are the free mean and log precision of
 /// `latents` (N × d each, column by column), then each stream's process.
-class BayesianObjective : public Objective {
+class BayesianObjective : public Maximand {
  public:
   /// `mean` (N × d) is where q(X) starts, with variances `variance` in (0, 1) without a prior over time.
   BayesianObjective(LatentPosterior latents, std::vector<VariationalStream> streams, const Eigen::MatrixXd& mean,
                     double variance);
 
   Eigen::Index size() const override { return start_.size(); }
-  bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) override;
-  /// Throws FactorisationError where evaluate() returns false.
-  double bound(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient);
 
   const Eigen::VectorXd& start() const { return start_; }
   /// Holds the noise of all streams where it is, or lets it go.
@@ -41,6 +38,7 @@ class BayesianObjective : public Objective {
 
  private:
   using View = Eigen::Map<const Eigen::MatrixXd>;
+  double compute(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) override;
   View free_mean(const Eigen::VectorXd& p) const { return {p.data(), rows(), d_}; }
   View log_precision(const Eigen::VectorXd& p) const { return {p.data() + rows() * d_, rows(), d_}; }
 

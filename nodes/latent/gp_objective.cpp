@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "nodes/latent/negative.h"
-
 namespace talkgraph {
 
 GpObjective::GpObjective(GpLikelihood& likelihood, Kernel kernel, const Eigen::MatrixXd& x, Eigen::MatrixXd inducing,
@@ -28,7 +26,7 @@ void GpObjective::set(const Eigen::VectorXd& parameters) {
   set_log_parameters(kernel_, parameters.tail(parameters.size() - moving_));
 }
 
-double GpObjective::log_likelihood(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) {
+double GpObjective::compute(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) {
   set(parameters);
   if (!gradient) return likelihood_.evaluate(kernel_, x_, inducing_, y_, nullptr);
   g_.set_zero(x_.rows(), inducing_.rows(), x_.cols(), parameter_count(kernel_));
@@ -36,10 +34,6 @@ double GpObjective::log_likelihood(const Eigen::VectorXd& parameters, Eigen::Vec
   gradient->resize(size());
   *gradient << g_.inducing.reshaped().head(moving_), g_.kernel;
   return value;
-}
-
-bool GpObjective::evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) {
-  return evaluate_negative([&] { return log_likelihood(parameters, gradient); }, cost, gradient);
 }
 
 std::string GpObjective::name(Eigen::Index parameter) const {

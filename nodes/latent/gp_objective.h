@@ -1,13 +1,13 @@
 #pragma once
 
 #include "nodes/latent/gp_likelihood.h"
-#include "nodes/latent/objective.h"
+#include "nodes/latent/maximand.h"
 
 namespace talkgraph {
 
-/// Negative log-likelihood of Gaussian process regression as a function of inducing points (k × d, column by column;
+/// Log-likelihood of Gaussian process regression as a function of inducing points (k × d, column by column;
 /// where the likelihood has them and they are not fixed) and log kernel parameters.
-class GpObjective : public Objective {
+class GpObjective : public Maximand {
  public:
   /// Inputs N × d, outputs N × D and the likelihood must outlive the objective.
   GpObjective(GpLikelihood& likelihood, Kernel kernel, const Eigen::MatrixXd& x, Eigen::MatrixXd inducing,
@@ -15,14 +15,15 @@ class GpObjective : public Objective {
 
   Eigen::VectorXd start() const;
   Eigen::Index size() const override;
-  bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) override;
   std::string name(Eigen::Index parameter) const override;
   /// Throws FactorisationError.
   GaussianProcess posterior(const Eigen::VectorXd& parameters);
 
+ protected:
+  double compute(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) override;
+
  private:
   void set(const Eigen::VectorXd& parameters);
-  double log_likelihood(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient);
 
   GpLikelihood& likelihood_;
   Kernel kernel_;

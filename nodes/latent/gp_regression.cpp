@@ -69,7 +69,7 @@ GpRegression TrainGp::operator()(const Collected<Track>& audio, const Collected<
     context.check_cancelled();
     context.progress(static_cast<double>(i) / iterations);
   };
-  const OptimiserReport report = minimiser->minimise(objective, parameters);
+  const OptimiserReport report = maximise(*minimiser, objective, parameters);
 
   GpRegression model;
   model.inputs = training.inputs;

@@ -13,10 +13,12 @@ namespace {
 class WidthHeld : public GpObjective {
  public:
   using GpObjective::GpObjective;
-  bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) override {
-    if (!GpObjective::evaluate(parameters, cost, gradient)) return false;
+
+ private:
+  double compute(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) override {
+    const double value = GpObjective::compute(parameters, gradient);
     if (gradient) (*gradient)[1] = 0;
-    return true;
+    return value;
   }
 };
 
@@ -31,7 +33,7 @@ GaussianProcess fit_dynamics(const Eigen::MatrixXd& latents, const std::vector<s
   Eigen::VectorXd parameters = objective.start();
   ScaledConjugateGradients optimiser;
   optimiser.iterations = iterations;
-  optimiser.minimise(objective, parameters);
+  maximise(optimiser, objective, parameters);
   GaussianProcess process = objective.posterior(parameters);
   process.mean = Eigen::RowVectorXd::Zero(latents.cols());
   process.scale = Eigen::RowVectorXd::Ones(latents.cols());

@@ -170,7 +170,7 @@ Key key_of(const std::string& subject, SgpdmObjective& objective, const LatentTr
 }
 
 /// Runs the optimiser, first with the noise held, from the start or a checkpoint; `state` receives the end.
-void maximise(const LatentTraining& options, int iterations, SgpdmObjective& objective, Checkpoint& checkpoint,
+void train(const LatentTraining& options, int iterations, SgpdmObjective& objective, Checkpoint& checkpoint,
               Context& context) {
   const auto started = std::chrono::steady_clock::now();
   const auto optimiser = make_optimiser(options.optimiser);
@@ -189,7 +189,7 @@ void maximise(const LatentTraining& options, int iterations, SgpdmObjective& obj
   if (checkpoint.noise_held) {
     objective.hold_noise(true);
     optimiser->iterations = std::min(options.hold_noise, iterations);
-    optimiser->minimise(objective, state);
+    maximise(*optimiser, objective, state);
     objective.hold_noise(false);
     checkpoint.noise_held = false;
     if (state.report.reason == StopReason::time) return;
@@ -197,8 +197,7 @@ void maximise(const LatentTraining& options, int iterations, SgpdmObjective& obj
     state.restart();
   }
   optimiser->iterations = iterations;
-  optimiser->minimise(objective, state);
-  if (state.report.reason == StopReason::failed) objective.log_likelihood(state.parameters, nullptr);
+  maximise(*optimiser, objective, state);
 }
 
 }  // namespace
@@ -256,7 +255,7 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
 
   const bool varies = std::any_of(frames.begin(), frames.end(), [](const auto& f) { return f.varies; });
   Checkpoint checkpoint(options.checkpoint, options.checkpoint.empty() ? Key{} : key_of(subject, objective, options));
-  maximise(options, varies ? options.iterations : 0, objective, checkpoint, context);
+  train(options, varies ? options.iterations : 0, objective, checkpoint, context);
   Eigen::VectorXd parameters = checkpoint.state.parameters;
   const bool constrained = options.back_constraint != BackConstraintKind::none;
   if (!constrained) parameters = rounded(parameters, 20);

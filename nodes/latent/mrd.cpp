@@ -177,12 +177,12 @@ Trained train_whole(const TrainMrd& node, BayesianObjective& objective, Context&
       context.progress(static_cast<double>(hold ? i : node.noise_held + i) / all);
     };
     objective.hold_noise(hold);
-    const OptimiserReport report = optimiser.minimise(objective, trained.parameters);
+    const OptimiserReport report = maximise(optimiser, objective, trained.parameters);
     trained.iterations += report.iterations;
     trained.end = str(report.reason);
     for (std::size_t i = hold ? 0 : 1; i < report.trace.size(); ++i) trained.trace.push_back(-report.trace[i]);
   }
-  trained.bound = objective.bound(trained.parameters, nullptr);
+  trained.bound = objective.value(trained.parameters, nullptr);
   return trained;
 }
 
@@ -198,12 +198,12 @@ Trained train_in_parts(const TrainMrd& node, BayesianObjective& objective, Conte
     trained.trace.push_back(bound);
   };
   trained.parameters = training(objective, random);
-  trained.bound = objective.bound(trained.parameters, nullptr);
+  trained.bound = objective.value(trained.parameters, nullptr);
   return trained;
 }
 
 Trained untrained(BayesianObjective& objective) {
-  return {objective.start(), objective.bound(objective.start(), nullptr), 0, "nothing varies", {}};
+  return {objective.start(), objective.value(objective.start(), nullptr), 0, "nothing varies", {}};
 }
 
 BayesianObjective objective_of(const TrainMrd& node, const Frames& frames) {

@@ -5,8 +5,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "nodes/latent/negative.h"
-
 namespace talkgraph {
 
 SgpdmObjective::SgpdmObjective(SgpdmProblem problem) : problem_(std::move(problem)) {
@@ -214,7 +212,7 @@ double SgpdmObjective::hyperprior(const Eigen::VectorXd& p, Eigen::VectorXd* gra
   return -0.5 * (precision * (p - start_).tail(count).squaredNorm() + static_cast<double>(count) * normaliser);
 }
 
-double SgpdmObjective::log_likelihood(const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
+double SgpdmObjective::compute(const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
   place_latents(p);
   if (gradient) {
     gradient->setZero(p.size());
@@ -232,10 +230,6 @@ double SgpdmObjective::log_likelihood(const Eigen::VectorXd& p, Eigen::VectorXd*
   gradient->array() *= free_.array();
   if (noise_held_) gradient->array() *= noise_.array();
   return value;
-}
-
-bool SgpdmObjective::evaluate(const Eigen::VectorXd& p, double& cost, Eigen::VectorXd* gradient) {
-  return evaluate_negative([&] { return log_likelihood(p, gradient); }, cost, gradient);
 }
 
 Eigen::MatrixXd SgpdmObjective::latents(const Eigen::VectorXd& p) {

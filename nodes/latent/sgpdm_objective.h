@@ -8,7 +8,7 @@
 
 #include "nodes/latent/back_constraint.h"
 #include "nodes/latent/gp_likelihood.h"
-#include "nodes/latent/objective.h"
+#include "nodes/latent/maximand.h"
 
 namespace talkgraph {
 
@@ -44,27 +44,23 @@ struct SgpdmProblem {
   std::vector<std::string> fixed;  ///< "latents", "inducing", "<stream>.<kernel parameter>"
 };
 
-/// Negative joint log-likelihood (Eqn 4.69), a true density of the observations
+/// Joint log-likelihood (Eqn 4.69), a true density of the observations
 /// in their own units, as a function of latent points (or the back-constraint's
 /// parameters), inducing points, log scales that are learnt, and log kernel
 /// parameters, in that order; matrices column by column, the dynamics after all
 /// observed streams.
-class SgpdmObjective : public Objective {
+class SgpdmObjective : public Maximand {
  public:
   /// Throws std::invalid_argument if `fixed` names what is not there.
   explicit SgpdmObjective(SgpdmProblem problem);
   SgpdmObjective(const SgpdmObjective&) = delete;
 
   Eigen::Index size() const override { return start_.size(); }
-  bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) override;
   std::string name(Eigen::Index parameter) const override;
 
   const Eigen::VectorXd& start() const { return start_; }
   /// Holds the white noise of every process where it is, or lets go of it.
   void hold_noise(bool held) { noise_held_ = held; }
-  /// Throws FactorisationError where evaluate() returns false.
-  double log_likelihood(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient);
-
   Eigen::MatrixXd latents(const Eigen::VectorXd& parameters);
   /// Of an observed stream, with its scale; its mean stays empty.
   GaussianProcess process(std::size_t stream, const Eigen::VectorXd& parameters);
@@ -85,6 +81,7 @@ class SgpdmObjective : public Objective {
   };
   using View = Eigen::Map<const Eigen::MatrixXd>;
 
+  double compute(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) override;
   void find_steps();
   void lay_out();
   void fix();

@@ -343,13 +343,13 @@ TEST(BayesianObjective, IsBelowTheEvidenceAndNearIt) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Eigen::VectorXd p = objective.start();
     p.head(10) += gaussian(10, 1, seed);  // q(X) and inducing points
-    EXPECT_LT(objective.bound(p, nullptr), evidence);
+    EXPECT_LT(objective.value(p, nullptr), evidence);
   }
   // Only q(X) and the inducing points move, so that the evidence stays what it is.
   Cost held(10, [&](const Eigen::VectorXd& p, Eigen::VectorXd* g) {
     Eigen::VectorXd all = objective.start(), by;
     all.head(10) = p;
-    const double value = -objective.bound(all, g ? &by : nullptr);
+    const double value = -objective.value(all, g ? &by : nullptr);
     if (g) *g = -by.head(10);
     return value;
   });

@@ -173,6 +173,9 @@ TEST(GpRegression, RefusesWhatItCannotLearnFrom) {
   silent.approximation = CovarianceApproximation::dtc;
   silent.kernel = {{KernelKind::rbf, 1, 1, 0}};
   EXPECT_THROW(silent(pairs.audio, pairs.visual, context), FactorisationError);
+  silent.approximation = CovarianceApproximation::fitc;
+  silent.kernel.push_back({KernelKind::white, 1e-200, 1, 0});
+  EXPECT_THROW(silent(pairs.audio, pairs.visual, context), FactorisationError);
   silent.kernel = {};
   EXPECT_THROW(silent(pairs.audio, pairs.visual, context), std::runtime_error);
   const GpRegression model = TrainGp{}(pairs.audio, pairs.visual, context);

@@ -202,6 +202,16 @@ TEST(TrainMrd, RefusesWhatItCannotTrainOn) {
   EXPECT_THAT(failure(data), HasSubstr("is missing in all 6 frames"));
 }
 
+TEST(TrainMrd, RefusesAStartWhoseBoundOverflows) {
+  TrainMrd node;
+  node.noise = 1e-320;
+  node.minimum_noise = 0;
+  for (const int batch : {0, 20}) {
+    node.batch = batch;
+    EXPECT_THROW(trained(node, shared_and_private(30, 1)), std::runtime_error);
+  }
+}
+
 TEST(TrainMrd, GivesTheSameBitsAgain) {
   StateData data = shared_and_private(60, 1);
   data.audio[0](3, 3) = nan;
@@ -277,6 +287,12 @@ TEST(FitDynamics, LearnsADecay) {
     EXPECT_NEAR(p.mean()(0), 0.16, 0.04);
     EXPECT_NEAR(std::sqrt(p.variance()[0]), 0.1, 0.02);
   }
+}
+
+TEST(FitDynamics, RefusesWhatOverflows) {
+  Eigen::MatrixXd x = gaussian(8, 2, 1);
+  for (Eigen::Index t = 1; t < 8; t += 2) x.row(t) *= 1e160;
+  EXPECT_THROW(fit_dynamics(x, {2, 2, 2, 2}, 1, 10, 30), FactorisationError);
 }
 
 }  // namespace

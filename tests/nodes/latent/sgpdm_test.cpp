@@ -281,6 +281,18 @@ TEST(TrainSgpdm, RefusesWhatItCannotTrainOn) {
   }
 }
 
+TEST(TrainSgpdm, RefusesAStartWhereOnlyDerivativesOverflow) {
+  Context context;
+  TrainSgpdm train;
+  train.inducing = 5;
+  train.noise = 1e-200;
+  train.minimum_noise = 0;
+  for (const auto kind : {OptimiserKind::scg, OptimiserKind::lbfgs}) {
+    train.optimiser = kind;
+    EXPECT_THROW(train(wavy(8, 4), context), FactorisationError);
+  }
+}
+
 TEST(TrainSgpdm, SaysWhatCanBeFixed) {
   Context context;
   TrainSgpdm train;
