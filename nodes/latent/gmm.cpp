@@ -92,7 +92,7 @@ Gmm TrainGmm::operator()(const Collected<Track>& tracks, Random& random, Context
 }
 
 void describe(Description<TrainGmm>& d) {
-  d.type("latent.gmm").version(1).stored();
+  d.type("latent.gmm").version(2).stored();
   d.summary("trains a Gaussian mixture model on tracks");
   d.source("Thesis §4.2.2, Eqns 4.5-4.6; expectation maximisation from k-means");
   d.input("tracks", "whose measured frames are learnt from").output("model", "weights, means and covariances");

@@ -6,19 +6,10 @@
 
 #include "nodes/latent/gp_objective.h"
 #include "nodes/latent/predictive.h"
+#include "nodes/yardstick/centred.h"
 #include "nodes/yardstick/stacked.h"
 
 namespace talkgraph {
-
-namespace {
-
-/// Standard deviations of centred columns; 1 where only rounding varies.
-Eigen::RowVectorXd deviations(const Eigen::MatrixXd& centred, const Eigen::RowVectorXd& mean) {
-  const Eigen::RowVectorXd deviation = centred.colwise().stableNorm() / std::sqrt(static_cast<double>(centred.rows()));
-  return (deviation.array() > 1e-10 * mean.array().abs()).select(deviation, 1.0);
-}
-
-}  // namespace
 
 void parameters(Parameters<KernelChoice>& p) {
   p.param("kind", &KernelChoice::kind).required().doc("rbf, ard (rbf with a width a dimension), linear, bias, white");
@@ -55,10 +46,12 @@ GpRegression TrainGp::operator()(const Collected<Track>& audio, const Collected<
   const StackedTraining training = stack_training(audio, visual, this->context);
   const double shrink = 1 / std::sqrt(static_cast<double>(training.audio.cols()));
   const Eigen::MatrixXd x = training.audio * shrink;
-  const Eigen::RowVectorXd mean = training.visual.colwise().mean();
-  Eigen::MatrixXd y = training.visual.rowwise() - mean;
-  const Eigen::RowVectorXd scale = deviations(y, mean);
-  y.array().rowwise() /= scale.array();
+  const CentredFrames visual_frames = centred(training.visual);
+  if (!visual_frames.varies())
+    context.warn(
+        fmt::format("no visual parameter varies in the {} training frames: all predictions are their mean", x.rows()));
+  const Eigen::RowVectorXd scale = output_scale(visual_frames.deviation, OutputScaling::per_dimension);
+  const Eigen::MatrixXd y = visual_frames.values.array().rowwise() / scale.array();
 
   const auto [likelihood, start] = approximate_gp(approximation, x, training.lengths, inducing);
   GpObjective objective(*likelihood, kernel_of(kernel, x.cols()), x, start, fix_inducing, y);
@@ -75,7 +68,7 @@ GpRegression TrainGp::operator()(const Collected<Track>& audio, const Collected<
   model.inputs = training.inputs;
   model.inputs.scale *= shrink;
   model.process = objective.posterior(parameters);
-  model.process.mean = mean;
+  model.process.mean = visual_frames.mean;
   model.process.scale = scale;
   model.log_likelihood = -report.cost - static_cast<double>(x.rows()) * scale.array().log().sum();
   model.iterations = report.iterations;
@@ -98,7 +91,7 @@ PredictGp::Prediction PredictGp::operator()(const GpRegression& model, const Tra
 }
 
 void describe(Description<TrainGp>& d) {
-  d.type("latent.gp").summary("learns Gaussian process regression from sound to visual parameters").stored();
+  d.type("latent.gp").version(2).summary("learns Gaussian process regression from sound to visual parameters").stored();
   d.source("Thesis §4.2.5, Eqns 4.20-4.33");
   d.input("audio", "speech features at the video rate of the training sequences")
       .input("visual", "visual parameters of the training sequences")

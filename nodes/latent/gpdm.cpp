@@ -29,7 +29,7 @@ Gpdm TrainGpdm::operator()(const Collected<Track>& tracks, Context& context) con
 }
 
 void describe(Description<TrainGpdm>& d) {
-  d.type("latent.gpdm").version(2).stored();
+  d.type("latent.gpdm").version(3).stored();
   d.summary("trains a Gaussian process dynamical model of one stream of tracks, or a GPLVM");
   d.source("Thesis §4.2.4-4.2.5, Eqns 4.34-4.46, corrected as in docs/method.md §4");
   d.input("tracks", "one track a sequence").output("model", "the process of one latent trajectory");

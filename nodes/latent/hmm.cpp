@@ -209,7 +209,7 @@ Hmm TrainHmm::operator()(const Collected<Track>& tracks, Random& random, Context
 }
 
 void describe(Description<TrainHmm>& d) {
-  d.type("latent.hmm").version(1).stored();
+  d.type("latent.hmm").version(2).stored();
   d.summary("trains a hidden Markov model with Gaussians or their mixtures on tracks");
   d.source("Thesis §4.2.3, Eqn 4.9; Baum-Welch from k-means");
   d.input("tracks", "every run of measured frames is a sequence").output("model", "start, transitions and mixtures");

@@ -12,6 +12,7 @@
 #include "nodes/latent/scg.h"
 #include "nodes/latent/sequences.h"
 #include "nodes/latent/sgpdm_objective.h"
+#include "nodes/yardstick/centred.h"
 
 namespace talkgraph {
 
@@ -20,28 +21,11 @@ namespace {
 using Lengths = std::vector<std::int64_t>;
 
 /// Frames less their mean, and the scale they are to be divided by.
-struct CentredFrames {
-  Eigen::MatrixXd values;
-  Eigen::RowVectorXd mean, scale;
-  bool varies = false;
+struct ScaledFrames : CentredFrames {
+  Eigen::RowVectorXd scale;
+  ScaledFrames(const TrainingStream& s) : CentredFrames(centred(s.frames)), scale(output_scale(deviation, s.scaling)) {}
   Eigen::MatrixXd scaled() const { return values.array().rowwise() / scale.array(); }
 };
-
-CentredFrames centred(const Eigen::MatrixXd& frames, OutputScaling scaling) {
-  CentredFrames s;
-  s.mean = frames.colwise().mean();
-  s.values = frames.rowwise() - s.mean;
-  const Eigen::RowVectorXd deviation =
-      (s.values.colwise().squaredNorm() / static_cast<double>(frames.rows())).cwiseSqrt();
-  const double common = std::sqrt(deviation.squaredNorm() / static_cast<double>(frames.cols()));
-  s.varies = common > 1e-12 * (1 + s.mean.cwiseAbs().maxCoeff());
-  s.scale.setOnes(frames.cols());
-  if (s.varies && scaling == OutputScaling::common) s.scale.setConstant(common);
-  if (s.varies && scaling == OutputScaling::per_dimension)
-    for (Eigen::Index c = 0; c < frames.cols(); ++c)
-      if (deviation[c] > 1e-6 * common) s.scale[c] = deviation[c];
-  return s;
-}
 
 /// d as the data allow it.
 Eigen::Index allowed_dimension(int wanted, const std::vector<TrainingStream>& streams) {
@@ -77,8 +61,7 @@ std::optional<BackProjection> back_projection(const LatentTraining& options, con
 }
 
 SgpdmProblem problem_of(const LatentTraining& options, const std::vector<TrainingStream>& streams,
-                        const std::vector<CentredFrames>& frames, const Lengths& lengths,
-                        const Eigen::MatrixXd& start) {
+                        const std::vector<ScaledFrames>& frames, const Lengths& lengths, const Eigen::MatrixXd& start) {
   SgpdmProblem problem;
   problem.lengths = lengths;
   problem.latents = start;
@@ -171,7 +154,7 @@ Key key_of(const std::string& subject, SgpdmObjective& objective, const LatentTr
 
 /// Runs the optimiser, first with the noise held, from the start or a checkpoint; `state` receives the end.
 void train(const LatentTraining& options, int iterations, SgpdmObjective& objective, Checkpoint& checkpoint,
-              Context& context) {
+           Context& context) {
   const auto started = std::chrono::steady_clock::now();
   const auto optimiser = make_optimiser(options.optimiser);
   if (options.time_limit > 0) optimiser->seconds = options.time_limit;
@@ -201,6 +184,17 @@ void train(const LatentTraining& options, int iterations, SgpdmObjective& object
 }
 
 }  // namespace
+
+Eigen::RowVectorXd output_scale(const Eigen::RowVectorXd& deviation, OutputScaling scaling) {
+  const Eigen::RowVectorXd ones = Eigen::RowVectorXd::Ones(deviation.size());
+  if (scaling == OutputScaling::none || (deviation.array() == 0).all()) return ones;
+  if (scaling == OutputScaling::per_dimension) return (deviation.array() > 0).select(deviation, ones);
+  return deviation.stableNorm() / std::sqrt(static_cast<double>(deviation.size())) * ones;
+}
+
+std::string nothing_varies(const std::string& subject, Eigen::Index frames) {
+  return fmt::format("{}: nothing varies in {} frames: the model answers with their mean", subject, frames);
+}
 
 std::unique_ptr<GpLikelihood> make_likelihood(CovarianceApproximation approximation, const Lengths& lengths,
                                               Eigen::Index most) {
@@ -240,10 +234,10 @@ std::unique_ptr<Optimiser> make_optimiser(OptimiserKind kind) {
 TrainedLatents train_latents(const LatentTraining& options, const std::string& subject,
                              const std::vector<TrainingStream>& streams, const Lengths& lengths,
                              const StartValues& start, Context& context) {
-  std::vector<CentredFrames> frames;
+  std::vector<ScaledFrames> frames;
   std::vector<Eigen::MatrixXd> scaled;
   for (const auto& s : streams) {
-    frames.push_back(centred(s.frames, s.scaling));
+    frames.emplace_back(s);
     scaled.push_back(frames.back().scaled());
   }
   const Eigen::Index d = allowed_dimension(options.latent_dimension, streams);
@@ -253,7 +247,8 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
   trained.dynamics_weight = problem.dynamics_weight;
   SgpdmObjective objective(std::move(problem));
 
-  const bool varies = std::any_of(frames.begin(), frames.end(), [](const auto& f) { return f.varies; });
+  const bool varies = std::any_of(frames.begin(), frames.end(), [](const auto& f) { return f.varies(); });
+  if (!varies) context.warn(nothing_varies(subject, streams[0].frames.rows()));
   Checkpoint checkpoint(options.checkpoint, options.checkpoint.empty() ? Key{} : key_of(subject, objective, options));
   train(options, varies ? options.iterations : 0, objective, checkpoint, context);
   Eigen::VectorXd parameters = checkpoint.state.parameters;
@@ -278,11 +273,11 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
   trained.first_variance = objective.first_variance(parameters);
   trained.jitter = objective.jitter();
   trained.report = checkpoint.state.report;
+  trained.ended = varies ? str(trained.report.reason) : "nothing varies";
   checkpoint.remove();
   context.log(fmt::format("{}: {} frames in {} sequences, d = {}, ln p = {:.1f} after {} iterations ({}){}", subject,
                           trained.latents.rows(), lengths.size(), d, -trained.report.cost, trained.report.iterations,
-                          str(trained.report.reason),
-                          trained.jitter > 1e-6 ? fmt::format(", jitter {:.1g}", trained.jitter) : ""));
+                          trained.ended, trained.jitter > 1e-6 ? fmt::format(", jitter {:.1g}", trained.jitter) : ""));
   return trained;
 }
 

@@ -70,8 +70,8 @@ inline constexpr EnumNames<OptimiserKind, 2> enum_names<OptimiserKind>{
 ///
 /// Observation kernels are RBF (or ARD) + bias + white, that of the dynamics RBF + linear + white. A process of at most
 /// `inducing` frames is exact whatever the approximation. The latent dimension is lowered to the smallest stream's and
-/// to N − 1 (at least 1). A dimension that does not vary keeps scale 1. Data that do not vary at all are not optimised:
-/// the model answers with their mean.
+/// to N − 1 (at least 1). Scales are as output_scale() has them. Data that do not vary at all are not optimised: the
+/// model answers with their mean, and a warning says so.
 struct LatentTraining {
   int latent_dimension = 3;
   ObservationKernel kernel = ObservationKernel::rbf;
@@ -97,6 +97,12 @@ struct LatentTraining {
   std::string checkpoint;
 };
 
+/// What outputs of these standard deviations (1 × D) are divided by. Those that do not vary keep 1, or the common
+/// scale; where none varies, all have 1.
+Eigen::RowVectorXd output_scale(const Eigen::RowVectorXd& deviation, OutputScaling scaling);
+/// The warning of a model of frames that are all alike.
+std::string nothing_varies(const std::string& subject, Eigen::Index frames);
+
 /// A stream of frames to be observed.
 struct TrainingStream {
   std::string name;
@@ -117,6 +123,7 @@ struct TrainedLatents {
   std::optional<BackConstraint> back_constraint;
   double dynamics_weight = 1, first_variance = 1, jitter = 0;
   OptimiserReport report;
+  std::string ended;  ///< why
 
   /// Moves all but the streams to a model of one or of two.
   template <class Model>
@@ -130,7 +137,7 @@ struct TrainedLatents {
     model.log_likelihood = -report.cost;
     model.jitter = jitter;
     for (const double cost : report.trace) model.trace.push_back(-cost);
-    model.ended = str(report.reason);
+    model.ended = ended;
   }
 };
 /// `subject` ("state \"t\"") stands in messages. Throws std::invalid_argument if `fixed` names an unknown parameter.

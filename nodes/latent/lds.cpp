@@ -265,7 +265,7 @@ Lds TrainLds::operator()(const Collected<Track>& tracks, Context& context) const
 }
 
 void describe(Description<TrainLds>& d) {
-  d.type("latent.lds").version(1).stored();
+  d.type("latent.lds").version(2).stored();
   d.summary("trains a linear dynamical system on tracks");
   d.source("Thesis §4.2.4, Eqns 4.13-4.19; expectation maximisation from PPCA");
   d.input("tracks", "every run of measured frames is a sequence").output("model", "the system's matrices");

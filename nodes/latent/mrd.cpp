@@ -227,7 +227,9 @@ BayesianObjective objective_of(const TrainMrd& node, const Frames& frames) {
 TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Random& random) const try {
   const Frames frames = frames_of(data, audio_scaling, visual_scaling);
   BayesianObjective objective = objective_of(*this, frames);
-  const Trained trained = !frames.audio.varies && !frames.visual.varies ? untrained(objective)
+  const bool varies = frames.audio.varies || frames.visual.varies;
+  if (!varies) context.warn(nothing_varies("state \"" + data.label + "\"", objective.rows()));
+  const Trained trained = !varies     ? untrained(objective)
                           : batch > 0 ? train_in_parts(*this, objective, context, random)
                                       : train_whole(*this, objective, context);
   const GaussianRows q = objective.posterior(trained.parameters);
@@ -269,7 +271,7 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
 }
 
 void describe(Description<TrainMrd>& d) {
-  d.type("latent.mrd").version(2).stored();
+  d.type("latent.mrd").version(3).stored();
   d.summary("trains a state's shared latent model, finding its dimension and what each stream needs of it");
   d.source("Titsias & Lawrence 2010; Damianou, Titsias & Lawrence 2011; Damianou, Ek, Titsias & Lawrence 2012");
   d.input("windows", "training windows of one state, NaN where a value is missing");

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "nodes/yardstick/centred.h"
+
 namespace talkgraph {
 
 namespace {
@@ -41,10 +43,7 @@ Eigen::VectorXd log_normal(const Eigen::MatrixXd& covariance, const Eigen::Matri
 }
 
 Eigen::VectorXd variance_floors(const Eigen::MatrixXd& frames, double share) {
-  const Eigen::RowVectorXd mean = frames.colwise().mean();
-  Eigen::VectorXd variances = (frames.rowwise() - mean).colwise().squaredNorm() / static_cast<double>(frames.rows());
-  const Eigen::ArrayXd rounding = 1e-28 * mean.array().square();
-  variances = (variances.array() > rounding).select(variances, 0);
+  const Eigen::VectorXd variances = centred(frames).deviation.cwiseAbs2();
   const double all = variances.mean();
   return share * (variances.array() > 0).select(variances, all > 0 ? all : 1.0);
 }

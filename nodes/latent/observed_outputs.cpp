@@ -6,6 +6,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "nodes/yardstick/centred.h"
+
 namespace talkgraph {
 
 namespace {
@@ -25,23 +27,11 @@ void check(const Eigen::MatrixXd& values, const std::string& stream) {
 }
 
 void centre(ObservedOutputs& y, const Eigen::MatrixXd& given, OutputScaling scaling) {
-  y.values = given;
-  y.mean.resize(given.cols());
-  y.scale.setOnes(given.cols());
-  Eigen::RowVectorXd deviation(given.cols());
-  for (Eigen::Index c = 0; c < given.cols(); ++c) {
-    const auto seen = (!given.col(c).array().isNaN()).eval();
-    const double count = static_cast<double>(seen.count());
-    y.mean[c] = seen.select(given.col(c).array(), 0.0).sum() / count;
-    y.values.col(c) = seen.select(given.col(c).array() - y.mean[c], 0.0);
-    deviation[c] = std::sqrt(y.values.col(c).squaredNorm() / count);
-  }
-  const double common = std::sqrt(deviation.squaredNorm() / static_cast<double>(given.cols()));
-  y.varies = common > 1e-12 * (1 + y.mean.cwiseAbs().maxCoeff());
-  if (y.varies && scaling == OutputScaling::common) y.scale.setConstant(common);
-  if (y.varies && scaling == OutputScaling::per_dimension)
-    y.scale = (deviation.array() > 1e-6 * common).select(deviation, y.scale);
-  y.values.array().rowwise() /= y.scale.array();
+  const CentredFrames frames = centred(given);
+  y.mean = frames.mean;
+  y.varies = frames.varies();
+  y.scale = output_scale(frames.deviation, scaling);
+  y.values = frames.values.array().rowwise() / y.scale.array();
 }
 
 /// Numbers of equal patterns, in the order in which they are first met.

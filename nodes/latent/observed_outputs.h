@@ -25,7 +25,7 @@ struct ObservedOutputs {
   Eigen::Index outputs() const { return values.cols(); }
 };
 
-/// NaN marks a missing value. Outputs that do not vary keep scale 1. Throws std::runtime_error, naming `stream` and
+/// NaN marks a missing value. Scales are as output_scale() has them. Throws std::runtime_error, naming `stream` and
 /// the output, if a value is infinite or an output is missing in every row.
 ObservedOutputs observed_outputs(const Eigen::MatrixXd& values, OutputScaling scaling, const std::string& stream);
 

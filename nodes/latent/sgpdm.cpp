@@ -83,7 +83,7 @@ Sgpdm TrainSgpdm::operator()(const StateData& data, Context& context) const {
 }
 
 void describe(Description<TrainSgpdm>& d) {
-  d.type("latent.sgpdm").version(3).stored();
+  d.type("latent.sgpdm").version(4).stored();
   d.summary("trains the shared Gaussian process dynamical model of one state's audio and visual windows");
   d.source("Thesis §4.3.3-4.3.4, §5.1.2, Eqns 4.65-4.70, corrected as in docs/method.md §4");
   d.input("windows", "training windows of one state")

@@ -37,7 +37,7 @@ Track NeighboursPredict::operator()(const NeighboursModel& model, const Track& a
 }
 
 void describe(Description<NeighboursTrain>& d) {
-  d.type("yardstick.neighbours_train").summary("keeps all training frames to look neighbours up in");
+  d.type("yardstick.neighbours_train").version(2).summary("keeps all training frames to look neighbours up in");
   d.input("audio", "speech features at the video rate of the training sequences")
       .input("visual", "visual parameters of the training sequences")
       .output("model", "the training frames");

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "nodes/yardstick/centred.h"
+
 namespace talkgraph {
 namespace {
 
@@ -61,19 +63,19 @@ StackedTraining stack_training(const Collected<Track>& audio, const Collected<Tr
   StackedTraining out;
   out.inputs.context = context;
   const auto dimension = pairs[0].audio->dimension();
-  const auto n = static_cast<double>(total);
-  out.inputs.mean = Eigen::RowVectorXd::Zero(dimension);
-  for (const auto& p : pairs) out.inputs.mean += p.audio_values().colwise().sum() / n;
-  Eigen::RowVectorXd variance = Eigen::RowVectorXd::Zero(dimension);
-  for (const auto& p : pairs) variance += (p.audio_values().rowwise() - out.inputs.mean).colwise().squaredNorm() / n;
-  const Eigen::RowVectorXd deviation = variance.cwiseSqrt();
-  // Below this only rounding varies.
-  const Eigen::RowVectorXd least = 1e-10 * out.inputs.mean.cwiseAbs();
-  out.inputs.scale = (deviation.array() > least.array()).select(deviation.cwiseInverse(), 0.0);
+  Eigen::MatrixXd heard(total, dimension);
+  Eigen::Index at = 0;
+  for (const auto& p : pairs) {
+    heard.middleRows(at, p.frames) = p.audio_values();
+    at += p.frames;
+  }
+  const CentredFrames audio_frames = centred(heard);
+  out.inputs.mean = audio_frames.mean;
+  out.inputs.scale = (audio_frames.deviation.array() > 0).select(audio_frames.deviation.cwiseInverse(), 0.0);
 
   out.audio.resize(total, dimension * (2 * context + 1));
   out.visual.resize(total, pairs[0].visual->dimension());
-  Eigen::Index at = 0;
+  at = 0;
   for (const auto& p : pairs) {
     const Eigen::MatrixXd audio_rows = stacked(out.inputs, *p.audio);
     const Eigen::Index first = at;

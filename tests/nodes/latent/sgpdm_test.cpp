@@ -264,6 +264,49 @@ TEST(TrainSgpdm, AnswersDegenerateData) {
   expect_usable(train(column, context));
 }
 
+TEST(TrainSgpdm, LearnsWhateverTheUnits) {
+  Context context;
+  TrainSgpdm train;
+  const StateData data = wavy(10, 4);
+  const Sgpdm expected = train(data, context);
+  StateData small = data, beside = data, uneven = data;
+  for (std::size_t w = 0; w < 10; ++w) {
+    small.audio[w] *= 1e-13;
+    small.visual[w] *= 1e-100;
+    beside.audio[w].conservativeResize(Eigen::NoChange, 9);
+    beside.audio[w].col(8).setConstant(1e13);
+    uneven.visual[w].col(2) *= 1e-9;
+  }
+  for (const auto& other : {small, beside, uneven}) {
+    const Sgpdm model = train(other, context);
+    EXPECT_GT(model.iterations, 0);
+    EXPECT_LT(unexplained(model, other), 1.5 * unexplained(expected, data));
+  }
+  const Sgpdm model = train(uneven, context);
+  EXPECT_NEAR(model.visual.scale[2] * 1e9, expected.visual.scale[2], 1e-9);
+}
+
+TEST(TrainSgpdm, SaysThatNothingVaries) {
+  StateData constant = wavy(3, 2);
+  for (auto& y : constant.audio) y.setConstant(0.1);
+  for (auto& z : constant.visual) z.setConstant(-2);
+  Context context;
+  std::string warning;
+  context.on_warning = [&](std::string_view text) { warning = text; };
+  TrainSgpdm train;
+  for (const auto scaling : {OutputScaling::per_dimension, OutputScaling::common}) {
+    train.audio_scaling = train.visual_scaling = scaling;
+    const Sgpdm model = train(constant, context);
+    EXPECT_EQ(model.ended, "nothing varies");
+    EXPECT_EQ(model.iterations, 0);
+    EXPECT_TRUE(model.audio.scale.isOnes(0));
+    EXPECT_EQ(warning, "state \"k-ae-t\": nothing varies in 6 frames: the model answers with their mean");
+  }
+  warning = "";
+  EXPECT_NE(train(wavy(3, 2), context).ended, "nothing varies");
+  EXPECT_EQ(warning, "");
+}
+
 TEST(TrainSgpdm, RefusesWhatItCannotTrainOn) {
   Context context;
   const TrainSgpdm train;
