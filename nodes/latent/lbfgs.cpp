@@ -22,7 +22,7 @@ class Run {
 
   void operator()() {
     Eigen::VectorXd at = s_.parameters;
-    if (!begin(at)) return;
+    if (s_.ended() || !begin(at)) return;
     lbfgs_parameter_t parameters;
     lbfgs_parameter_init(&parameters);
     parameters.m = options_.memory;
@@ -91,16 +91,14 @@ class Run {
     report.gradient_norm = gradient.lpNorm<Eigen::Infinity>();
     report.trace.push_back(cost);
     ++report.iterations;
+    if (change < options_.step_tolerance && decrease < options_.cost_tolerance) report.reason = StopReason::converged;
     try {
       if (options_.on_iteration) options_.on_iteration(report.iterations, cost);
     } catch (...) {
       thrown_ = std::current_exception();
       return 1;
     }
-    if (change < options_.step_tolerance && decrease < options_.cost_tolerance) {
-      report.reason = StopReason::converged;
-      return 1;
-    }
+    if (report.reason == StopReason::converged) return 1;
     if (now() > end_) report.reason = StopReason::time;
     return report.iterations >= options_.iterations || report.reason == StopReason::time;
   }

@@ -20,6 +20,12 @@ std::string str(StopReason reason) {
   return "cost cannot be evaluated";
 }
 
+bool OptimiserState::ended() const {
+  const bool by_itself = report.reason == StopReason::converged || report.reason == StopReason::flat ||
+                         report.reason == StopReason::stalled;
+  return by_itself && gradient.size() > 0;
+}
+
 void OptimiserState::restart() {
   OptimiserState fresh;
   fresh.parameters = std::move(parameters);

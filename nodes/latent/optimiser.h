@@ -42,6 +42,8 @@ struct OptimiserState {
   bool moved = true;
   std::int64_t successes = 0;
 
+  /// Whether it came to an end that no limit set: there is nothing to go on with.
+  bool ended() const;
   /// Keeps point, iterations and trace and forgets the rest, where the objective has changed.
   void restart();
 };
@@ -59,7 +61,7 @@ struct Optimiser {
   virtual ~Optimiser() = default;
   /// Lowers the cost from `parameters`, which receive the best point found. If an exception ends it, they are lost.
   OptimiserReport minimise(Objective& objective, Eigen::VectorXd& parameters) const;
-  /// Goes on from a state, whose iterations count towards the limit.
+  /// Goes on from a state, whose iterations count towards the limit, unless it has ended.
   virtual void minimise(Objective& objective, OptimiserState& state) const = 0;
 };
 

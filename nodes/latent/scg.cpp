@@ -17,6 +17,7 @@ class Run {
       : options_(options), objective_(objective), s_(state), trial_(state.parameters.size()) {}
 
   void operator()() {
+    if (s_.ended()) return;
     OptimiserReport& report = s_.report;
     if (s_.gradient.size() == 0 && !begin()) {
       report.reason = StopReason::failed;

@@ -161,6 +161,30 @@ TEST_P(Optimisers, GoOnFromAStateOnDisk) {
   }
 }
 
+TEST_P(Optimisers, GoOnFromAnyIterationToTheSameEnd) {
+  Rosenbrock f;
+  const Eigen::VectorXd start = Eigen::Vector2d(-1.2, 1);
+  OptimiserState whole;
+  whole.parameters = start;
+  optimiser(2000, 1e-6)->minimise(f, whole);
+  ASSERT_EQ(whole.report.reason, StopReason::converged);
+  struct Killed {};
+  for (int stop = 1; stop <= whole.report.iterations; ++stop) {
+    OptimiserState state;
+    state.parameters = start;
+    const auto killed = optimiser(2000, 1e-6);
+    killed->on_iteration = [&](int i, double) {
+      if (i == stop) throw Killed();
+    };
+    EXPECT_THROW(killed->minimise(f, state), Killed);
+    optimiser(2000, 1e-6)->minimise(f, state);
+    EXPECT_EQ(state.report.reason, StopReason::converged);
+    if (GetParam() == Kind::lbfgs && stop < whole.report.iterations) continue;  // the memory of its steps is lost
+    EXPECT_EQ(state.parameters, whole.parameters) << "stopped after " << stop;
+    EXPECT_EQ(state.report.trace, whole.report.trace) << "stopped after " << stop;
+  }
+}
+
 /// GPLVM with kernel x·x' + noise: its optimum is dual PPCA.
 TEST_P(Optimisers, ReachTheClosedFormOfPpca) {
   const Eigen::Index n = 12, dims = 30, d = 2;

@@ -193,6 +193,27 @@ TEST(TrainSgpdm, GoesOnOnlyFromACheckpointOfTheSameTraining) {
   EXPECT_FALSE(std::filesystem::is_empty(many.checkpoint)) << "the longer training's checkpoint is gone";
 }
 
+TEST(TrainSgpdm, EndsAtOnceWhereItWasStoppedConverged) {
+  const auto data = wavy(6, 4);
+  const test::TemporaryFolder folder;
+  Context context;
+  TrainSgpdm train;
+  train.iterations = 5000;
+  const Sgpdm whole = train(data, context);
+  ASSERT_EQ(whole.ended, "converged");
+  train.checkpoint = folder.file("checkpoints");
+  std::atomic<bool> cancel = false;
+  Context stopped;
+  stopped.cancel = &cancel;
+  std::int64_t told = 0;
+  stopped.on_progress = [&](double) { cancel = ++told == whole.iterations - 1; };
+  EXPECT_THROW(train(data, stopped), Cancelled);
+  const Sgpdm resumed = train(data, context);
+  EXPECT_EQ(resumed.latents, whole.latents);
+  EXPECT_EQ(resumed.trace, whole.trace);
+  EXPECT_EQ(resumed.ended, "converged");
+}
+
 TEST(TrainSgpdm, GivesTheSameBitsAgain) {
   const auto data = wavy(8, 4);
   Context context;
