@@ -42,14 +42,17 @@ class Run {
   bool begin(const Eigen::VectorXd& at) {
     ++s_.report.evaluations;
     s_.gradient.resize(at.size());
-    if (!objective_.evaluate(at, s_.report.cost, &s_.gradient) || !s_.gradient.allFinite()) {
+    if (!objective_.evaluate(at, s_.report.cost, &s_.gradient) || !std::isfinite(s_.report.cost) ||
+        !s_.gradient.allFinite()) {
       s_.report.reason = StopReason::failed;
       return false;
     }
     s_.report.gradient_norm = s_.gradient.lpNorm<Eigen::Infinity>();
     if (s_.report.trace.empty()) s_.report.trace.push_back(s_.report.cost);
     s_.report.reason = StopReason::iterations;
-    return s_.report.iterations < options_.iterations;
+    if (s_.report.iterations >= options_.iterations) return false;
+    if (at.size() == 0) s_.report.reason = StopReason::flat;
+    return at.size() > 0;
   }
 
   static double evaluate(void* run, const double* x, double* gradient, int n, double) {

@@ -135,6 +135,31 @@ TEST_P(Optimisers, SayThatTheGradientVanishedAtTheMinimum) {
   EXPECT_EQ(optimiser(100, 1e-9)->minimise(f, p).reason, StopReason::flat);
 }
 
+/// One cost whatever the parameters.
+struct Constant : Objective {
+  Eigen::Index count;
+  double cost;
+  Constant(Eigen::Index count, double cost) : count(count), cost(cost) {}
+  Eigen::Index size() const override { return count; }
+  bool evaluate(const Eigen::VectorXd& p, double& value, Eigen::VectorXd* gradient) override {
+    value = cost;
+    if (gradient) *gradient = Eigen::VectorXd::Zero(p.size());
+    return true;
+  }
+};
+
+TEST_P(Optimisers, GiveTheSameReasonsWhereThereIsNothingToDo) {
+  const auto reason = [&](Eigen::Index count, double cost, int iterations) {
+    Constant f(count, cost);
+    Eigen::VectorXd p = Eigen::VectorXd::Ones(count);
+    return optimiser(iterations, 1e-9)->minimise(f, p).reason;
+  };
+  EXPECT_EQ(reason(2, std::nan(""), 10), StopReason::failed);
+  EXPECT_EQ(reason(2, 1, 10), StopReason::flat);
+  EXPECT_EQ(reason(0, 1, 10), StopReason::flat);
+  EXPECT_EQ(reason(0, 1, 0), StopReason::iterations);
+}
+
 TEST_P(Optimisers, GoOnFromAStateOnDisk) {
   struct Killed {};
   Rosenbrock f;
