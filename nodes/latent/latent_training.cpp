@@ -69,7 +69,6 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
   if (problem.back_constraint)
     problem.latents = problem.back_constraint->compute(problem.back_constraint->parameters());
   problem.form = options.dynamics == LatentDynamics::difference ? DynamicsForm::difference : DynamicsForm::absolute;
-  if (options.first_point == FirstPoint::variance) problem.first_variance = options.first_variance;
   problem.prior_deviation = options.prior_deviation;
   problem.fixed = options.fixed;
 
@@ -83,11 +82,16 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
          frames[i].values, frames[i].scale, options.learn_scale});
   }
   problem.dynamics_weight = options.dynamics_bias ? static_cast<double>(larger) / static_cast<double>(start.cols()) : 1;
-  const bool steps = start.rows() > static_cast<Eigen::Index>(lengths.size());
-  if (options.dynamics == LatentDynamics::none || !steps) {
-    if (!problem.first_variance) problem.first_variance = options.first_variance;
+  if (options.dynamics == LatentDynamics::none) {
+    if (options.latent_prior) {
+      problem.lengths.assign(static_cast<std::size_t>(start.rows()), 1);
+      problem.first_variance = 1;
+    }
     return problem;
   }
+  const bool steps = start.rows() > static_cast<Eigen::Index>(lengths.size());
+  if (options.first_point == FirstPoint::variance || !steps) problem.first_variance = options.first_variance;
+  if (!steps) return problem;
   problem.dynamics =
       stream_of(options, "dynamics", Kernel{{RbfTerm{0.1, options.dynamics_inverse_width}, LinearTerm{1}}},
                 steps_of(problem.latents, lengths).from, lengths_of_steps(lengths), problem.dynamics_weight);

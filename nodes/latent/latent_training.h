@@ -69,9 +69,10 @@ inline constexpr EnumNames<OptimiserKind, 2> enum_names<OptimiserKind>{
 /// back-constraint's parameters), inducing points and kernel parameters.
 ///
 /// Observation kernels are RBF (or ARD) + bias + white, that of the dynamics RBF + linear + white. A process of at most
-/// `inducing` frames is exact whatever the approximation. The latent dimension is lowered to the smallest stream's and
-/// to N − 1 (at least 1). Scales are as output_scale() has them. Data that do not vary at all are not optimised: the
-/// model answers with their mean, and a warning says so.
+/// `inducing` frames is exact whatever the approximation. Without dynamics latent points have no prior (or N(0, I),
+/// `latent_prior`): the objective is then the density of the frames, where nothing weighs a stream or a parameter. The
+/// latent dimension is lowered to the smallest stream's and to N − 1 (at least 1). Scales are as output_scale() has
+/// them. Data that do not vary at all are not optimised: the model answers with their mean, and a warning says so.
 struct LatentTraining {
   int latent_dimension = 3;
   ObservationKernel kernel = ObservationKernel::rbf;
@@ -82,6 +83,7 @@ struct LatentTraining {
   double dynamics_inverse_width = 1;
   FirstPoint first_point = FirstPoint::variance;
   double first_variance = 0.1;
+  bool latent_prior = false;
   BackConstraintKind back_constraint = BackConstraintKind::none;
   int hidden_units = 20;
   double kbr_inverse_width = 1;
@@ -188,6 +190,8 @@ void describe_training(Description<Node>& d) {
   param("first_variance", &LatentTraining::first_variance)
       .positive()
       .doc("of the prior of each sequence's first latent point");
+  param("latent_prior", &LatentTraining::latent_prior)
+      .doc("without dynamics every latent point has the prior N(0, I), of the weight of the dynamics; off: none");
   param("back_constraint", &LatentTraining::back_constraint)
       .doc("latent points as a function of the first stream: a perceptron, or kernel-based regression");
   param("hidden_units", &LatentTraining::hidden_units).at_least(1).doc("of the perceptron");

@@ -188,6 +188,7 @@ double SgpdmObjective::dynamics_likelihood(Place& place, const Eigen::VectorXd& 
 }
 
 double SgpdmObjective::first_points(const Eigen::VectorXd& p, Eigen::VectorXd* gradient) {
+  if (!problem_.first_variance && !problem_.dynamics) return 0;
   const double weight = problem_.dynamics_weight, d = static_cast<double>(x_.cols()), v = first_variance(p);
   double value = 0, by_variance = 0;
   for (const auto row : first_) {
@@ -196,7 +197,7 @@ double SgpdmObjective::first_points(const Eigen::VectorXd& p, Eigen::VectorXd* g
     by_variance += 0.5 * (square / v - d) / v;
     if (gradient) x_gradient_.row(row) -= weight / v * x_.row(row);
   }
-  if (gradient && !problem_.first_variance && problem_.dynamics) {
+  if (gradient && !problem_.first_variance) {
     const Place& h = places_.back();
     white_gradient(h.now, weight * by_variance, gradient->segment(h.kernel, parameter_count(h.now)));
   }

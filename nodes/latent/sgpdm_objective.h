@@ -39,7 +39,7 @@ struct SgpdmProblem {
   std::optional<GpStream> dynamics;
   DynamicsForm form = DynamicsForm::absolute;
   double dynamics_weight = 1;            ///< λ_dyn, of the dynamics and of the prior of the first points
-  std::optional<double> first_variance;  ///< σ₁²; without it the dynamics' noise (the source's β_dyn⁻¹), or else 1
+  std::optional<double> first_variance;  ///< σ₁²; without it the dynamics' noise (the source's β_dyn⁻¹), or no prior
   double prior_deviation = 0;      ///< of a normal prior on log kernel parameters about their start values; 0: none
   std::vector<std::string> fixed;  ///< "latents", "inducing", "<stream>.<kernel parameter>"
 };

@@ -98,7 +98,8 @@ double textbook(const Combination& c, const SgpdmProblem& p) {
     value += o.process.weight *
              (textbook(c, o.process, x, scaled, lengths) - static_cast<double>(frames) * o.scale.array().log().sum());
   }
-  const double first_variance = p.first_variance.value_or(p.dynamics ? testing::textbook_white(p.dynamics->kernel) : 1);
+  if (!p.first_variance && !p.dynamics) return value;
+  const double first_variance = p.first_variance ? *p.first_variance : testing::textbook_white(p.dynamics->kernel);
   Eigen::MatrixXd in(4, latent), out(4, latent), first(3, latent);
   in << x.middleRows(0, 2), x.middleRows(4, 2);
   out << x.middleRows(1, 2), x.middleRows(5, 2);

@@ -146,6 +146,37 @@ TEST(TrainSgpdm, FirstPointsMayTakeTheNoiseOfTheDynamics) {
   EXPECT_EQ(train(wavy(6, 1), context).first_variance, 0.1);
 }
 
+/// ln p(Y | X) of a stream at the model's latent points.
+double density(const GaussianProcess& gp, const Sgpdm& model, const std::vector<Eigen::MatrixXd>& windows) {
+  Eigen::MatrixXd frames(model.latents.rows(), windows[0].cols());
+  for (Eigen::Index row = 0; const auto& w : windows) {
+    frames.middleRows(row, w.rows()) = w;
+    row += w.rows();
+  }
+  return testing::textbook_density(testing::textbook_full(gp.kernel, model.latents), scaled(gp, frames)) -
+         static_cast<double>(frames.rows()) * gp.scale.array().log().sum();
+}
+
+TEST(TrainSgpdm, WithoutDynamicsIsTheDensityOfTheFrames) {
+  Context context;
+  const StateData data = wavy(6, 4);
+  TrainSgpdm train;
+  train.dynamics = LatentDynamics::none;
+  train.likelihood_bias = false;
+  train.prior_deviation = 0;
+  const Sgpdm plain = train(data, context);
+  const double expected = density(plain.audio, plain, data.audio) + density(plain.visual, plain, data.visual);
+  EXPECT_NEAR(plain.log_likelihood, expected, 1e-5 * std::abs(expected));
+  train.dynamics_bias = false;
+  train.latent_prior = true;
+  const Sgpdm drawn = train(data, context);
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(24, 24);
+  EXPECT_NEAR(drawn.log_likelihood,
+              density(drawn.audio, drawn, data.audio) + density(drawn.visual, drawn, data.visual) +
+                  testing::textbook_density(identity, drawn.latents),
+              1e-5 * std::abs(expected));
+}
+
 TEST(TrainSgpdm, GoesOnWhereItWasStopped) {
   const auto data = wavy(8, 4);
   const test::TemporaryFolder folder;
