@@ -28,10 +28,17 @@ struct ScaledFrames : CentredFrames {
 };
 
 /// d as the data allow it.
-Eigen::Index allowed_dimension(int wanted, const std::vector<TrainingStream>& streams) {
-  Eigen::Index d = std::min<Eigen::Index>(wanted, streams[0].frames.rows() - 1);
-  for (const auto& s : streams) d = std::min(d, s.frames.cols());
-  return std::max<Eigen::Index>(1, d);
+Eigen::Index allowed_dimension(int wanted, const std::string& subject, const std::vector<TrainingStream>& streams,
+                               Context& context) {
+  const Eigen::Index frames = streams[0].frames.rows();
+  Eigen::Index largest = 0;
+  for (const auto& s : streams) largest = std::max(largest, s.frames.cols());
+  const Eigen::Index d = std::max<Eigen::Index>(1, std::min<Eigen::Index>({wanted, largest, frames - 1}));
+  if (d < wanted)
+    context.warn(
+        fmt::format("{}: latent_dimension is {} and not {}, as {} frames of at most {} dimensions have no more",
+                    subject, d, wanted, frames, largest));
+  return d;
 }
 
 Lengths lengths_of_steps(Lengths lengths) {
@@ -244,7 +251,7 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
     frames.emplace_back(s);
     scaled.push_back(frames.back().scaled());
   }
-  const Eigen::Index d = allowed_dimension(options.latent_dimension, streams);
+  const Eigen::Index d = allowed_dimension(options.latent_dimension, subject, streams, context);
   SgpdmProblem problem = problem_of(options, streams, frames, lengths, start(scaled, d));
   TrainedLatents trained;
   trained.form = problem.form;

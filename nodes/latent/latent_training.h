@@ -71,8 +71,9 @@ inline constexpr EnumNames<OptimiserKind, 2> enum_names<OptimiserKind>{
 /// Observation kernels are RBF (or ARD) + bias + white, that of the dynamics RBF + linear + white. A process of at most
 /// `inducing` frames is exact whatever the approximation. Without dynamics latent points have no prior (or N(0, I),
 /// `latent_prior`): the objective is then the density of the frames, where nothing weighs a stream or a parameter. The
-/// latent dimension is lowered to the smallest stream's and to N − 1 (at least 1). Scales are as output_scale() has
-/// them. Data that do not vary at all are not optimised: the model answers with their mean, and a warning says so.
+/// latent dimension is lowered to the largest stream's and to N − 1 (at least 1), with a warning. Scales are as
+/// output_scale() has them. Data that do not vary at all are not optimised: the model answers with their mean, and a
+/// warning says so.
 struct LatentTraining {
   int latent_dimension = 3;
   ObservationKernel kernel = ObservationKernel::rbf;
@@ -170,7 +171,7 @@ void describe_training(Description<Node>& d) {
   };
   param("latent_dimension", &LatentTraining::latent_dimension)
       .at_least(1)
-      .doc("lowered to the smallest stream's dimension and to the number of frames less one");
+      .doc("lowered to the largest stream's dimension and to the number of frames less one");
   param("kernel", &LatentTraining::kernel)
       .doc("of the observed streams, beside bias and noise: RBF of one inverse width, or of one a latent dimension");
   param("approximation", &LatentTraining::approximation)

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <stdexcept>
 
@@ -47,11 +48,24 @@ Eigen::MatrixXd averaged_ppca(const Eigen::MatrixXd& y, const Eigen::MatrixXd& z
   return 0.5 * (a + b);
 }
 
-Eigen::MatrixXd start_values(LatentStart start, const Eigen::MatrixXd& y, const Eigen::MatrixXd& z, Eigen::Index d) {
+/// Of as many dimensions as both streams have.
+Eigen::MatrixXd shared_start(LatentStart start, const Eigen::MatrixXd& y, const Eigen::MatrixXd& z, Eigen::Index d) {
   if (start == LatentStart::ppca) return averaged_ppca(y, z, d);
   const Pcca pcca = fit_pcca(y, z, d);
   if (start == LatentStart::pcca) return pcca.posterior_mean(y, z);
   return 0.5 * ((y.rowwise() - pcca.mean_y) * pcca.directions_y + (z.rowwise() - pcca.mean_z) * pcca.directions_z);
+}
+
+/// Beyond those, principal components of what they leave of the larger stream.
+Eigen::MatrixXd start_values(LatentStart start, const Eigen::MatrixXd& y, const Eigen::MatrixXd& z, Eigen::Index d) {
+  const Eigen::Index shared = std::min({d, y.cols(), z.cols()});
+  const Eigen::MatrixXd x = shared_start(start, y, z, shared);
+  if (shared == d) return x;
+  const Eigen::MatrixXd& larger = y.cols() > z.cols() ? y : z;
+  const Eigen::MatrixXd left = larger - x * x.completeOrthogonalDecomposition().solve(larger);
+  Eigen::MatrixXd all(x.rows(), d);
+  all << x, fit_ppca(left, d - shared).posterior_mean(left);
+  return all;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/SVD>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -357,6 +358,30 @@ TEST(TrainSgpdm, SaysThatNothingVaries) {
   warning = "";
   EXPECT_NE(train(wavy(3, 2), context).ended, "nothing varies");
   EXPECT_EQ(warning, "");
+}
+
+TEST(TrainSgpdm, HasAsManyDimensionsAsAreAskedFor) {
+  StateData data = wavy(10, 4);
+  for (auto& z : data.visual) z = z.leftCols(1).eval();
+  std::vector<std::string> warnings;
+  Context context;
+  context.on_warning = [&](std::string_view text) { warnings.emplace_back(text); };
+  TrainSgpdm train;
+  for (const auto initial : {LatentStart::pcca, LatentStart::ppca, LatentStart::cca}) {
+    train.initial = initial;
+    train.iterations = 0;
+    const Eigen::MatrixXd x = train(data, context).latents;
+    ASSERT_EQ(x.cols(), 3);
+    EXPECT_GT(Eigen::JacobiSVD<Eigen::MatrixXd>(x).singularValues()[2], 0.1);
+    train.iterations = 20;
+    expect_usable(train(data, context));
+  }
+  EXPECT_TRUE(warnings.empty());
+  train.latent_dimension = 9;
+  EXPECT_EQ(train(data, context).latents.cols(), 8);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0],
+            "state \"k-ae-t\": latent_dimension is 8 and not 9, as 40 frames of at most 8 dimensions have no more");
 }
 
 TEST(TrainSgpdm, RefusesWhatItCannotTrainOn) {
