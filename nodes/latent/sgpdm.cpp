@@ -14,6 +14,14 @@ namespace {
 
 void check(const StateData& data) {
   const auto fail = [&](const std::string& what) { throw std::runtime_error("state \"" + data.label + "\": " + what); };
+  const auto require_finite = [&](const Eigen::MatrixXd& window, const char* stream, std::size_t number) {
+    for (Eigen::Index t = 0; t < window.rows(); ++t)
+      if (!window.row(t).allFinite())
+        fail(
+            fmt::format("frame {} of {} window {} has a value that is not finite; where values are missing (NaN), "
+                        "latent.mrd learns from the others",
+                        t, stream, number));
+  };
   if (data.audio.size() != data.visual.size())
     fail(fmt::format("{} audio windows but {} visual", data.audio.size(), data.visual.size()));
   if (data.audio.empty()) fail("no training windows; map it to a shorter label (context.windows)");
@@ -21,10 +29,13 @@ void check(const StateData& data) {
     const auto &y = data.audio[i], &z = data.visual[i];
     if (y.rows() != z.rows() || y.rows() == 0)
       fail(fmt::format("window {} has {} audio frames and {} visual", i, y.rows(), z.rows()));
-    if (y.cols() != data.audio[0].cols() || z.cols() != data.visual[0].cols() || y.cols() == 0 || z.cols() == 0)
-      fail(
-          fmt::format("window {} has {} audio and {} visual dimensions, not those of window 0", i, y.cols(), z.cols()));
-    if (!y.allFinite() || !z.allFinite()) fail(fmt::format("window {} has a value that is not finite", i));
+    if (y.cols() == 0 || z.cols() == 0)
+      fail(fmt::format("window {} has no {} dimensions", i, y.cols() ? "visual" : "audio"));
+    if (y.cols() != data.audio[0].cols() || z.cols() != data.visual[0].cols())
+      fail(fmt::format("window {} has {} audio and {} visual dimensions, but window 0 has {} and {}", i, y.cols(),
+                       z.cols(), data.audio[0].cols(), data.visual[0].cols()));
+    require_finite(y, "audio", i);
+    require_finite(z, "visual", i);
   }
 }
 

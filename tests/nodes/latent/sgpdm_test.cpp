@@ -397,7 +397,17 @@ TEST(TrainSgpdm, RefusesWhatItCannotTrainOn) {
     train(data, context);
     FAIL();
   } catch (const std::runtime_error& e) {
-    EXPECT_NE(std::string(e.what()).find("state \"k-ae-t\": window 1"), std::string::npos) << e.what();
+    EXPECT_STREQ(e.what(),
+                 "state \"k-ae-t\": frame 0 of audio window 1 has a value that is not finite; where values are missing "
+                 "(NaN), latent.mrd learns from the others");
+  }
+  data = wavy(1, 3);
+  data.visual[0].resize(3, 0);
+  try {
+    train(data, context);
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_STREQ(e.what(), "state \"k-ae-t\": window 0 has no visual dimensions");
   }
 }
 
