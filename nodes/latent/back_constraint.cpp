@@ -13,8 +13,16 @@ constexpr double ridge = 1e-3;
 constexpr std::uint64_t hidden_seed = 1;
 
 /// φ of every row, N × H.
+void compute_features(const HiddenUnits& units, const ConstMatrix& y, Eigen::MatrixXd& phi) {
+  phi.noalias() = y * units.weights;
+  phi.rowwise() += units.bias;
+  phi = phi.array().tanh();
+}
+
 Eigen::MatrixXd features(const HiddenUnits& units, const ConstMatrix& y) {
-  return ((y * units.weights).rowwise() + units.bias).array().tanh();
+  Eigen::MatrixXd phi;
+  compute_features(units, y, phi);
+  return phi;
 }
 
 Eigen::MatrixXd features(const RbfUnits& units, const ConstMatrix& y) {
@@ -98,7 +106,9 @@ BackConstraint of_rescaled(BackConstraint b, const Eigen::RowVectorXd& ratio) {
 }
 
 BackProjection::BackProjection(BackConstraint b, Eigen::MatrixXd y)
-    : b_(std::move(b)), y_(std::move(y)), features_(features(b_, y_)) {}
+    : b_(std::move(b)), y_(std::move(y)), features_(features(b_, y_)) {
+  if (std::holds_alternative<RbfUnits>(b_.units)) derivative_.units = RbfUnits{};
+}
 
 Eigen::Index BackProjection::size() const {
   Eigen::Index n = 0;
@@ -120,24 +130,22 @@ BackConstraint BackProjection::with(const Eigen::Ref<const Eigen::VectorXd>& par
 
 const Eigen::MatrixXd& BackProjection::compute(const Eigen::Ref<const Eigen::VectorXd>& parameters) {
   read_parameters(b_, parameters);
-  if (std::holds_alternative<HiddenUnits>(b_.units)) features_ = features(b_, y_);
-  x_.resize(y_.rows(), b_.weights.cols());
+  if (const auto* hidden = std::get_if<HiddenUnits>(&b_.units)) compute_features(*hidden, y_, features_);
   x_.noalias() = features_ * b_.weights;
   x_.rowwise() += b_.bias;
   return x_;
 }
 
-void BackProjection::gradient(const ConstMatrix& x_gradient, VectorView parameters) const {
-  BackConstraint derivative;
-  derivative.weights = features_.transpose() * x_gradient;
-  derivative.bias = x_gradient.colwise().sum();
-  if (std::holds_alternative<HiddenUnits>(b_.units)) {
-    const Eigen::MatrixXd inner = (x_gradient * b_.weights.transpose()).array() * (1 - features_.array().square());
-    derivative.units = HiddenUnits{y_.transpose() * inner, inner.colwise().sum()};
-  } else {
-    derivative.units = RbfUnits{};
+void BackProjection::gradient(const ConstMatrix& x_gradient, VectorView parameters) {
+  derivative_.weights.noalias() = features_.transpose() * x_gradient;
+  derivative_.bias = x_gradient.colwise().sum();
+  if (auto* hidden = std::get_if<HiddenUnits>(&derivative_.units)) {
+    inner_.noalias() = x_gradient * b_.weights.transpose();
+    inner_.array() *= 1 - features_.array().square();
+    hidden->weights.noalias() = y_.transpose() * inner_;
+    hidden->bias = inner_.colwise().sum();
   }
-  write_parameters(derivative, parameters);
+  write_parameters(derivative_, parameters);
 }
 
 }  // namespace talkgraph

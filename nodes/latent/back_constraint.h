@@ -20,7 +20,7 @@ BackConstraint kernel_regression(const ConstMatrix& y, const ConstMatrix& x, dou
 BackConstraint of_rescaled(BackConstraint b, const Eigen::RowVectorXd& ratio);
 
 /// A back-constraint at its training frames, as a function of its parameters θ:
-/// weights and bias, and those of hidden units.
+/// weights and bias, and those of hidden units. Its memory is used again by every computation.
 class BackProjection {
  public:
   /// y is N × D.
@@ -32,11 +32,11 @@ class BackProjection {
   /// Latent points, N × d.
   const Eigen::MatrixXd& compute(const Eigen::Ref<const Eigen::VectorXd>& parameters);
   /// Derivative by the parameters last computed with, given that by the latent points.
-  void gradient(const ConstMatrix& x_gradient, VectorView parameters) const;
+  void gradient(const ConstMatrix& x_gradient, VectorView parameters);
 
  private:
-  BackConstraint b_;
-  Eigen::MatrixXd y_, features_, x_;
+  BackConstraint b_, derivative_;
+  Eigen::MatrixXd y_, features_, x_, inner_;
 };
 
 }  // namespace talkgraph

@@ -39,7 +39,8 @@ void Predictive::gradient(const GaussianProcess& gp, const ConstMatrix& x, doubl
       weight * 0.5 * (residual_.rowwise().squaredNorm().array() / variance_.array().square() - d / variance_.array());
   for (Eigen::Index t = 0; t < variance_.size(); ++t)
     if (variance_[t] <= noise) variance_gradient_[t] = 0;
-  residual_.array().colwise() *= weight / variance_.array();
+  weights_ = weight / variance_.array();
+  residual_.array().colwise() *= weights_.array();
   y_gradient -= residual_;
   if (gp.root.size() > 0) {
     reduced_.resize(gp.basis.rows(), x.rows());
@@ -47,7 +48,7 @@ void Predictive::gradient(const GaussianProcess& gp, const ConstMatrix& x, doubl
   }
   g_.resize(gp.basis.rows(), x.rows());
   g_.noalias() = gp.weights * residual_.transpose();
-  g_ -= reduced_ * (2 * variance_gradient_).asDiagonal();
+  g_.noalias() -= reduced_ * (2 * variance_gradient_).asDiagonal();
   basis_gradient_.setZero(gp.basis.rows(), gp.basis.cols());
   logs_.setZero(parameter_count(gp.kernel));
   kernel_.gradient(gp.kernel, gp.basis, x, g_, basis_gradient_, x_gradient, logs_);

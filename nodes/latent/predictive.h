@@ -26,7 +26,7 @@ class Predictive {
  private:
   KernelMatrix kernel_;
   Eigen::MatrixXd mean_, residual_, rooted_, reduced_, g_, basis_gradient_;
-  Eigen::VectorXd variance_, variance_gradient_, logs_;
+  Eigen::VectorXd variance_, variance_gradient_, weights_, logs_;
 };
 
 /// Scaled outputs in their own units, and the reverse.

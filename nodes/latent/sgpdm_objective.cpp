@@ -28,11 +28,20 @@ void SgpdmObjective::find_steps() {
 
 void SgpdmObjective::lay_out() {
   for (Observations& o : problem_.observations) {
-    places_.push_back({.stream = &o.process, .observed = &o, .now = o.process.kernel, .outputs = {}, .gradient = {}});
+    places_.push_back({.stream = &o.process,
+                       .observed = &o,
+                       .now = o.process.kernel,
+                       .outputs = {},
+                       .gradient = {},
+                       .inverse_scale = {}});
     places_.back().outputs = o.values.array().rowwise() / o.scale.array();
   }
   if (problem_.dynamics)
-    places_.push_back({.stream = &*problem_.dynamics, .now = problem_.dynamics->kernel, .outputs = {}, .gradient = {}});
+    places_.push_back({.stream = &*problem_.dynamics,
+                       .now = problem_.dynamics->kernel,
+                       .outputs = {},
+                       .gradient = {},
+                       .inverse_scale = {}});
 
   Eigen::VectorXd latents = problem_.latents.reshaped();
   if (problem_.back_constraint) latents = problem_.back_constraint->parameters();
@@ -125,8 +134,9 @@ void SgpdmObjective::place_latents(const Eigen::VectorXd& p) {
 
 void SgpdmObjective::place_outputs(Place& place, const Eigen::VectorXd& p) const {
   const Observations& o = *place.observed;
-  if (o.learn_scale)
-    place.outputs = o.values.array().rowwise() * (-p.segment(place.scale, o.scale.size()).array()).exp().transpose();
+  if (!o.learn_scale) return;
+  place.inverse_scale = (-p.segment(place.scale, o.scale.size()).transpose().array()).exp();
+  place.outputs = o.values.array().rowwise() * place.inverse_scale.array();
 }
 
 void SgpdmObjective::gather_steps() {

@@ -78,6 +78,7 @@ class SgpdmObjective : public Maximand {
     Kernel now;
     Eigen::MatrixXd outputs;
     GpGradient gradient;
+    Eigen::RowVectorXd inverse_scale;
   };
   using View = Eigen::Map<const Eigen::MatrixXd>;
 
