@@ -113,10 +113,19 @@ class Checkpoint {
     std::filesystem::create_directories(folder);
     path_ = std::filesystem::path(folder) / (of.str() + ".h5");
   }
-  bool load() {
+  /// False where there is none, or only one that cannot be read, which is removed.
+  bool load(const std::string& subject, const Context& context) {
     if (path_.empty() || !std::filesystem::exists(path_)) return false;
-    fields(*hdf5_reader(path_.string()));
-    return true;
+    try {
+      fields(*hdf5_reader(path_.string()));
+      return true;
+    } catch (const std::runtime_error& e) {
+      context.warn(fmt::format("{}: the checkpoint cannot be read ({}): it is removed, training begins anew", subject,
+                               e.what()));
+      remove();
+      state = {};
+      return false;
+    }
   }
   void save_now_and_then() {
     if (path_.empty() || std::chrono::steady_clock::now() - saved_ < std::chrono::seconds(10)) return;
@@ -164,8 +173,8 @@ Key key_of(const std::string& subject, SgpdmObjective& objective, const LatentTr
 }
 
 /// Runs the optimiser, first with the noise held, from the start or a checkpoint; `state` receives the end.
-void train(const LatentTraining& options, int iterations, SgpdmObjective& objective, Checkpoint& checkpoint,
-           Context& context) {
+void train(const LatentTraining& options, int iterations, const std::string& subject, SgpdmObjective& objective,
+           Checkpoint& checkpoint, Context& context) {
   const auto started = std::chrono::steady_clock::now();
   const auto optimiser = make_optimiser(options.optimiser);
   if (options.time_limit > 0) optimiser->seconds = options.time_limit;
@@ -176,7 +185,7 @@ void train(const LatentTraining& options, int iterations, SgpdmObjective& object
     context.progress(static_cast<double>(i) / iterations);
   };
   OptimiserState& state = checkpoint.state;
-  if (!checkpoint.load()) {
+  if (!checkpoint.load(subject, context)) {
     state.parameters = objective.start();
     checkpoint.noise_held = options.hold_noise > 0;
   }
@@ -261,7 +270,7 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
   const bool varies = std::any_of(frames.begin(), frames.end(), [](const auto& f) { return f.varies(); });
   if (!varies) context.warn(nothing_varies(subject, streams[0].frames.rows()));
   Checkpoint checkpoint(options.checkpoint, options.checkpoint.empty() ? Key{} : key_of(subject, objective, options));
-  train(options, varies ? options.iterations : 0, objective, checkpoint, context);
+  train(options, varies ? options.iterations : 0, subject, objective, checkpoint, context);
   Eigen::VectorXd parameters = checkpoint.state.parameters;
   const bool constrained = options.back_constraint != BackConstraintKind::none;
   if (!constrained) parameters = rounded(parameters, 20);

@@ -225,6 +225,31 @@ TEST(TrainSgpdm, GoesOnOnlyFromACheckpointOfTheSameTraining) {
   EXPECT_FALSE(std::filesystem::is_empty(many.checkpoint)) << "the longer training's checkpoint is gone";
 }
 
+TEST(TrainSgpdm, BeginsAnewWhereACheckpointIsDamaged) {
+  const auto data = wavy(6, 4);
+  const test::TemporaryFolder folder;
+  Context context;
+  std::string warning;
+  context.on_warning = [&](std::string_view text) { warning = text; };
+  TrainSgpdm train;
+  const Sgpdm whole = train(data, context);
+  train.checkpoint = folder.file("checkpoints");
+  for (const std::uintmax_t size : {0, 100, 3000}) {
+    std::atomic<bool> cancel = false;
+    Context stopped;
+    stopped.cancel = &cancel;
+    stopped.on_progress = [&](double share) { cancel = share >= 0.5; };
+    EXPECT_THROW(train(data, stopped), Cancelled);
+    const auto file = std::filesystem::directory_iterator(train.checkpoint)->path();
+    ASSERT_GT(std::filesystem::file_size(file), size);
+    std::filesystem::resize_file(file, size);
+    EXPECT_EQ(train(data, context).trace, whole.trace);
+    EXPECT_NE(warning.find("state \"k-ae-t\": the checkpoint cannot be read (" + train.checkpoint), std::string::npos)
+        << warning;
+    EXPECT_TRUE(std::filesystem::is_empty(train.checkpoint));
+  }
+}
+
 TEST(TrainSgpdm, EndsAtOnceWhereItWasStoppedConverged) {
   const auto data = wavy(6, 4);
   const test::TemporaryFolder folder;
