@@ -33,8 +33,8 @@ double condition(const Eigen::MatrixXd& matrix) {
         size, first_not_finite(matrix)));
   throw FactorisationError(fmt::format(
       "{} is not positive definite, even with a hundredth of its mean diagonal added (diagonal from {:.3g} to {:.3g}, "
-      "condition about {:.1g}): raise minimum_noise, look for repeated points, or lower the number of inducing points",
-      size, matrix.diagonal().minCoeff(), matrix.diagonal().maxCoeff(), condition(matrix)));
+      "condition about {:.1g}): {}, look for repeated points, or lower the number of inducing points",
+      size, matrix.diagonal().minCoeff(), matrix.diagonal().maxCoeff(), condition(matrix), more_noise));
 }
 
 }  // namespace

@@ -11,6 +11,9 @@ struct FactorisationError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What a message advises against too little noise.
+inline constexpr const char* more_noise = "raise the least noise (minimum_noise, or the minimum of a white term)";
+
 /// Cholesky factor of a covariance matrix. Where the matrix is not positive
 /// definite to working precision (a pivot is lost in the rounding errors of its
 /// diagonal entry), a share of its mean diagonal is added to the diagonal:

@@ -23,7 +23,7 @@ double DiagonalLikelihood::condition(const Kernel& kernel, const ConstMatrix& x,
   const double added = outputs * noise(block.conditional, white_variance(kernel), block.lambda);
   if (!(block.lambda.array() > 0).all())
     throw FactorisationError(
-        fmt::format("the noise of a frame is {}, but must be above 0: raise minimum_noise", block.lambda.minCoeff()));
+        fmt::format("the noise of a frame is {}, but must be above 0: {}", block.lambda.minCoeff(), more_noise));
   block.inverse_root = block.lambda.cwiseSqrt().cwiseInverse();
   unwhiten(block, block.w);
   unwhiten(block, block.outputs);

@@ -34,9 +34,8 @@ void GpLikelihood::check_finite(double value, const GpGradient* gradient, const 
                                      : nullptr;
   throw FactorisationError(
       nan ? fmt::format("the log-likelihood is not finite: the {} are not", nan)
-          : fmt::format("the log-likelihood {} not finite: inputs reach {:.3g}, outputs {:.3g}; scale them, or raise "
-                        "minimum_noise",
-                        std::isfinite(value) ? "has derivatives that are" : "is", largest(x), largest(y)));
+          : fmt::format("the log-likelihood {} not finite: inputs reach {:.3g}, outputs {:.3g}; scale them, or {}",
+                        std::isfinite(value) ? "has derivatives that are" : "is", largest(x), largest(y), more_noise));
 }
 
 }  // namespace talkgraph

@@ -73,7 +73,7 @@ GpRegression TrainGp::operator()(const Collected<Track>& audio, const Collected<
   model.log_likelihood = -report.cost - static_cast<double>(x.rows()) * scale.array().log().sum();
   model.iterations = report.iterations;
   model.jitter = likelihood->jitter();
-  context.log(fmt::format("{} frames of {} inputs, ln p = {:.1f} after {} iterations ({}){}", x.rows(), x.cols(),
+  context.log(fmt::format("{} frames of {} inputs, ln p = {:.6g} after {} iterations ({}){}", x.rows(), x.cols(),
                           model.log_likelihood, report.iterations, str(report.reason),
                           model.jitter > 0 ? fmt::format(", jitter {:.1g}", model.jitter) : ""));
   return model;

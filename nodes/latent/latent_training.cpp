@@ -253,7 +253,7 @@ std::unique_ptr<Optimiser> make_optimiser(OptimiserKind kind) {
 
 TrainedLatents train_latents(const LatentTraining& options, const std::string& subject,
                              const std::vector<TrainingStream>& streams, const Lengths& lengths,
-                             const StartValues& start, Context& context) {
+                             const StartValues& start, Context& context) try {
   std::vector<ScaledFrames> frames;
   std::vector<Eigen::MatrixXd> scaled;
   for (const auto& s : streams) {
@@ -295,10 +295,12 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
   trained.report = checkpoint.state.report;
   trained.ended = varies ? str(trained.report.reason) : "nothing varies";
   checkpoint.remove();
-  context.log(fmt::format("{}: {} frames in {} sequences, d = {}, ln p = {:.1f} after {} iterations ({}){}", subject,
+  context.log(fmt::format("{}: {} frames in {} sequences, d = {}, ln p = {:.6g} after {} iterations ({}){}", subject,
                           trained.latents.rows(), lengths.size(), d, -trained.report.cost, trained.report.iterations,
                           trained.ended, trained.jitter > 1e-6 ? fmt::format(", jitter {:.1g}", trained.jitter) : ""));
   return trained;
+} catch (const FactorisationError& e) {
+  throw FactorisationError(subject + ": " + e.what());
 }
 
 }  // namespace talkgraph

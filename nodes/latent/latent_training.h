@@ -143,7 +143,8 @@ struct TrainedLatents {
     model.ended = ended;
   }
 };
-/// `subject` ("state \"t\"") stands in messages. Throws std::invalid_argument if `fixed` names an unknown parameter.
+/// `subject` ("state \"t\"") stands in messages. Throws std::invalid_argument if `fixed` names an unknown parameter,
+/// FactorisationError where training cannot begin.
 TrainedLatents train_latents(const LatentTraining& options, const std::string& subject,
                              const std::vector<TrainingStream>& streams, const std::vector<std::int64_t>& lengths,
                              const StartValues& start, Context& context);

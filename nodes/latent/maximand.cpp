@@ -9,8 +9,9 @@ namespace talkgraph {
 double Maximand::value(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) {
   const double result = compute(parameters, gradient);
   if (std::isfinite(result) && (!gradient || gradient->allFinite())) return result;
-  throw FactorisationError(fmt::format("what is maximised is {}{}; scale the data, or start from more noise", result,
-                                       std::isfinite(result) ? ", but its derivatives are not finite" : ""));
+  throw FactorisationError(fmt::format("what is maximised is {}{}; scale the data, or {}", result,
+                                       std::isfinite(result) ? ", but its derivatives are not finite" : "",
+                                       more_noise));
 }
 
 bool Maximand::evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) {

@@ -259,7 +259,7 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
   out.relevance = relevance_table(data.label, r, relevant);
   out.dimensions = dimensions_table(data.label, r, n, trained.bound);
   context.log(fmt::format(
-      "state \"{}\": {} frames in {} windows, bound {:.1f} after {} iterations ({}); of {} dimensions {} shared, {} of "
+      "state \"{}\": {} frames in {} windows, bound {:.6g} after {} iterations ({}); of {} dimensions {} shared, {} of "
       "audio, {} of visual only; relevance to audio {:.2f}, to visual {:.2f}",
       data.label, n, frames.lengths.size(), trained.bound, trained.iterations, trained.end, objective.dimension(),
       r.shared, r.audio_only, r.visual_only, fmt::join(r.audio, " "), fmt::join(r.visual, " ")));

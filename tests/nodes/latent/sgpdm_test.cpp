@@ -409,6 +409,20 @@ TEST(TrainSgpdm, HasAsManyDimensionsAsAreAskedFor) {
             "state \"k-ae-t\": latent_dimension is 8 and not 9, as 40 frames of at most 8 dimensions have no more");
 }
 
+TEST(TrainSgpdm, LogsFewDigits) {
+  StateData data = wavy(4, 3);
+  for (auto& y : data.audio) y *= 1e90;
+  Context context;
+  std::string log;
+  context.on_log = [&](std::string_view text) { log = text; };
+  TrainSgpdm train;
+  train.audio_scaling = OutputScaling::none;
+  train.iterations = 0;
+  train(data, context);
+  EXPECT_NE(log.find("e+18"), std::string::npos) << log;
+  EXPECT_LT(log.size(), 150u) << log;
+}
+
 TEST(TrainSgpdm, RefusesWhatItCannotTrainOn) {
   Context context;
   const TrainSgpdm train;
@@ -444,7 +458,14 @@ TEST(TrainSgpdm, RefusesAStartWhereOnlyDerivativesOverflow) {
   train.minimum_noise = 0;
   for (const auto kind : {OptimiserKind::scg, OptimiserKind::lbfgs}) {
     train.optimiser = kind;
-    EXPECT_THROW(train(wavy(8, 4), context), FactorisationError);
+    try {
+      train(wavy(8, 4), context);
+      FAIL();
+    } catch (const FactorisationError& e) {
+      EXPECT_EQ(std::string(e.what()).find("state \"k-ae-t\": the log-likelihood has derivatives that are not finite"),
+                0u)
+          << e.what();
+    }
   }
 }
 
