@@ -67,6 +67,36 @@ std::optional<BackProjection> back_projection(const LatentTraining& options, con
   return std::nullopt;
 }
 
+Kernel dynamics_kernel(const LatentTraining& options) {
+  return {{RbfTerm{0.1, options.dynamics_inverse_width}, LinearTerm{1}}};
+}
+
+/// `fixed` may name parameters of dynamics whether or not there are any.
+std::vector<std::string> fixed_without_dynamics(const LatentTraining& options) {
+  Kernel absent = dynamics_kernel(options);
+  absent.terms.push_back(WhiteTerm{});
+  std::vector<std::string> fixed = options.fixed;
+  for (const auto& parameter : parameter_names(absent)) std::erase(fixed, "dynamics." + parameter);
+  return fixed;
+}
+
+/// p(X), if any: dynamics and what first points have, or the same for every point.
+void add_latent_prior(const LatentTraining& options, SgpdmProblem& problem) {
+  const Lengths& lengths = problem.lengths;
+  const auto frames = static_cast<std::size_t>(problem.latents.rows());
+  const bool steps = frames > lengths.size();
+  if (options.dynamics == LatentDynamics::none) {
+    if (!options.latent_prior) return;
+    problem.lengths.assign(frames, 1);
+    problem.first_variance = 1;
+  } else {
+    if (!steps || options.first_point == FirstPoint::variance) problem.first_variance = options.first_variance;
+    if (!steps) return;
+    problem.dynamics = stream_of(options, "dynamics", dynamics_kernel(options), steps_of(problem.latents, lengths).from,
+                                 lengths_of_steps(lengths), problem.dynamics_weight);
+  }
+}
+
 SgpdmProblem problem_of(const LatentTraining& options, const std::vector<TrainingStream>& streams,
                         const std::vector<ScaledFrames>& frames, const Lengths& lengths, const Eigen::MatrixXd& start) {
   SgpdmProblem problem;
@@ -77,7 +107,6 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
     problem.latents = problem.back_constraint->compute(problem.back_constraint->parameters());
   problem.form = options.dynamics == LatentDynamics::difference ? DynamicsForm::difference : DynamicsForm::absolute;
   problem.prior_deviation = options.prior_deviation;
-  problem.fixed = options.fixed;
 
   Eigen::Index larger = 0;
   Kernel observation{{RbfTerm{1, 1}, BiasTerm{0.1}}};
@@ -89,19 +118,8 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
          frames[i].values, frames[i].scale, options.learn_scale});
   }
   problem.dynamics_weight = options.dynamics_bias ? static_cast<double>(larger) / static_cast<double>(start.cols()) : 1;
-  if (options.dynamics == LatentDynamics::none) {
-    if (options.latent_prior) {
-      problem.lengths.assign(static_cast<std::size_t>(start.rows()), 1);
-      problem.first_variance = 1;
-    }
-    return problem;
-  }
-  const bool steps = start.rows() > static_cast<Eigen::Index>(lengths.size());
-  if (options.first_point == FirstPoint::variance || !steps) problem.first_variance = options.first_variance;
-  if (!steps) return problem;
-  problem.dynamics =
-      stream_of(options, "dynamics", Kernel{{RbfTerm{0.1, options.dynamics_inverse_width}, LinearTerm{1}}},
-                steps_of(problem.latents, lengths).from, lengths_of_steps(lengths), problem.dynamics_weight);
+  add_latent_prior(options, problem);
+  problem.fixed = problem.dynamics ? options.fixed : fixed_without_dynamics(options);
   return problem;
 }
 

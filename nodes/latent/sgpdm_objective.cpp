@@ -111,8 +111,7 @@ void SgpdmObjective::fix() {
         ++i;
       }
     }
-    const bool absent_dynamics = !problem_.dynamics && name.starts_with("dynamics.");
-    if (known || absent_dynamics) continue;
+    if (known) continue;
     std::string choices = "latents, inducing";
     for (const Place& place : places_)
       for (const auto& parameter : parameter_names(place.stream->kernel))

@@ -485,6 +485,18 @@ TEST(TrainSgpdm, SaysWhatCanBeFixed) {
   }
 }
 
+TEST(TrainSgpdm, FixesWhatDynamicsHaveWhetherThereAreAnyOrNot) {
+  Context context;
+  for (const auto form : {LatentDynamics::none, LatentDynamics::absolute}) {
+    TrainSgpdm train;
+    train.dynamics = form;
+    train.fixed = {"dynamics.linear", "dynamics.white", "dynamics.rbf_variance", "dynamics.inverse_width"};
+    expect_usable(train(wavy(2, 3), context));
+    train.fixed = {"dynamics.foo"};
+    EXPECT_THROW(train(wavy(2, 3), context), std::invalid_argument);
+  }
+}
+
 TEST(TrainSgpdm, StopsWhenCancelled) {
   std::atomic<bool> cancel = true;
   Context context;
