@@ -42,24 +42,28 @@ void fields(Archive& ar, OptimiserReport& report) {
   ar("trace", report.trace);
 }
 
+void fields(Archive& ar, ConjugateDirection& c) {
+  ar("direction", c.direction);
+  ar("scale", c.scale);
+  ar("slope", c.slope);
+  ar("length", c.length);
+  ar("curvature", c.curvature);
+  ar("moved", c.moved);
+  ar("successes", c.successes);
+}
+
 void fields(Archive& ar, OptimiserState& state) {
   ar("parameters", state.parameters);
   ar("report", state.report);
   ar("gradient", state.gradient);
-  ar("direction", state.direction);
-  ar("scale", state.scale);
-  ar("slope", state.slope);
-  ar("length", state.length);
-  ar("curvature", state.curvature);
-  ar("moved", state.moved);
-  ar("successes", state.successes);
+  ar("conjugate", state.conjugate);
 }
 
 OptimiserReport Optimiser::minimise(Objective& objective, Eigen::VectorXd& parameters) const {
   OptimiserState state;
-  state.parameters.swap(parameters);
+  state.parameters = parameters;
   minimise(objective, state);
-  parameters.swap(state.parameters);
+  parameters = state.parameters;
   return std::move(state.report);
 }
 

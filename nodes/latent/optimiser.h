@@ -31,16 +31,22 @@ struct OptimiserReport {
   std::vector<double> trace;  ///< the cost at the start and after each iteration
 };
 
+/// What scaled conjugate gradients keep from one iteration to the next.
+struct ConjugateDirection {
+  Eigen::VectorXd direction;
+  double scale = 1, slope = 0, length = 0, curvature = 0;
+  bool moved = true;
+  std::int64_t successes = 0;
+};
+
 /// Where an optimisation stands, for who wants to interrupt it: saved after some
 /// iteration and given to minimise() again, scaled conjugate gradients go on to
 /// the same bits; L-BFGS from the same point, with an empty memory.
 struct OptimiserState {
   Eigen::VectorXd parameters;
   OptimiserReport report;
-  Eigen::VectorXd gradient, direction;
-  double scale = 1, slope = 0, length = 0, curvature = 0;
-  bool moved = true;
-  std::int64_t successes = 0;
+  Eigen::VectorXd gradient;
+  ConjugateDirection conjugate;
 
   /// Whether it came to an end that no limit set: there is nothing to go on with.
   bool ended() const;
@@ -59,7 +65,8 @@ struct Optimiser {
   std::function<void(int iteration, double cost)> on_iteration;
 
   virtual ~Optimiser() = default;
-  /// Lowers the cost from `parameters`, which receive the best point found. If an exception ends it, they are lost.
+  /// Lowers the cost from `parameters`, which receive the best point found, or stay as they are if an exception ends
+  /// it.
   OptimiserReport minimise(Objective& objective, Eigen::VectorXd& parameters) const;
   /// Goes on from a state, whose iterations count towards the limit, unless it has ended.
   virtual void minimise(Objective& objective, OptimiserState& state) const = 0;

@@ -14,7 +14,7 @@ constexpr double least_scale = 1e-15, most_scale = 1e20, curvature_step = 1e-4;
 class Run {
  public:
   Run(const ScaledConjugateGradients& options, Objective& objective, OptimiserState& state)
-      : options_(options), objective_(objective), s_(state), trial_(state.parameters.size()) {}
+      : options_(options), objective_(objective), s_(state), c_(state.conjugate), trial_(state.parameters.size()) {}
 
   void operator()() {
     if (s_.ended()) return;
@@ -47,7 +47,7 @@ class Run {
   bool begin() {
     Eigen::VectorXd gradient(trial_.size());
     if (!evaluate(s_.parameters, s_.report.cost, gradient)) return false;
-    s_.direction = -gradient;
+    c_.direction = -gradient;
     s_.gradient.swap(gradient);
     s_.report.gradient_norm = s_.gradient.lpNorm<Eigen::Infinity>();
     if (s_.report.trace.empty()) s_.report.trace.push_back(s_.report.cost);
@@ -56,67 +56,68 @@ class Run {
 
   /// Slope and curvature along the direction. False where it has no length.
   bool look_along_direction() {
-    s_.slope = s_.direction.dot(s_.gradient);
-    if (s_.slope >= 0) {
-      s_.direction = -s_.gradient;
-      s_.slope = -s_.gradient.squaredNorm();
+    c_.slope = c_.direction.dot(s_.gradient);
+    if (c_.slope >= 0) {
+      c_.direction = -s_.gradient;
+      c_.slope = -s_.gradient.squaredNorm();
     }
-    s_.length = s_.direction.squaredNorm();
-    if (s_.length < 1e-20) return false;
-    const double sigma = curvature_step / std::sqrt(s_.length);
+    c_.length = c_.direction.squaredNorm();
+    if (c_.length < 1e-20) return false;
+    const double sigma = curvature_step / std::sqrt(c_.length);
     double cost = 0;
-    trial_ = s_.parameters + sigma * s_.direction;
-    s_.curvature =
-        evaluate(trial_, cost, trial_gradient_) ? s_.direction.dot(trial_gradient_ - s_.gradient) / sigma : 0;
+    trial_ = s_.parameters + sigma * c_.direction;
+    c_.curvature =
+        evaluate(trial_, cost, trial_gradient_) ? c_.direction.dot(trial_gradient_ - s_.gradient) / sigma : 0;
     return true;
   }
 
   /// One iteration. False where there is no direction; sets the reason where it is the last.
   bool step() {
     OptimiserReport& report = s_.report;
-    if (s_.moved && !look_along_direction()) {
+    if (c_.moved && !look_along_direction()) {
       report.reason = StopReason::flat;
       return false;
     }
-    double bend = s_.curvature + s_.scale * s_.length;
+    double bend = c_.curvature + c_.scale * c_.length;
     if (bend <= 0) {
-      bend = s_.scale * s_.length;
-      s_.scale -= s_.curvature / s_.length;
+      bend = c_.scale * c_.length;
+      c_.scale -= c_.curvature / c_.length;
     }
-    const double step = -s_.slope / bend;
-    trial_ = s_.parameters + step * s_.direction;
+    const double step = -c_.slope / bend;
+    trial_ = s_.parameters + step * c_.direction;
     double cost = 0;
     const bool evaluated = evaluate(trial_, cost, trial_gradient_);
-    const double agreement = evaluated ? 2 * (cost - report.cost) / (step * s_.slope) : -1;
-    s_.moved = agreement >= 0;
-    if (s_.moved) move(step, cost);
+    const double agreement = evaluated ? 2 * (cost - report.cost) / (step * c_.slope) : -1;
+    c_.moved = agreement >= 0;
+    if (c_.moved) move(step, cost);
     if (report.reason == StopReason::converged) return true;
-    if (agreement < 0.25) s_.scale = std::min(4 * s_.scale, most_scale);
-    if (agreement > 0.75) s_.scale = std::max(0.5 * s_.scale, least_scale);
-    if (s_.scale >= most_scale) report.reason = StopReason::stalled;
+    if (agreement < 0.25) c_.scale = std::min(4 * c_.scale, most_scale);
+    if (agreement > 0.75) c_.scale = std::max(0.5 * c_.scale, least_scale);
+    if (c_.scale >= most_scale) report.reason = StopReason::stalled;
     return true;
   }
 
   void move(double step, double cost) {
     const double decrease = s_.report.cost - cost;
-    const double change = step * s_.direction.cwiseAbs().maxCoeff();
-    const double mixing = (s_.gradient - trial_gradient_).dot(trial_gradient_) / s_.slope;
+    const double change = step * c_.direction.cwiseAbs().maxCoeff();
+    const double mixing = (s_.gradient - trial_gradient_).dot(trial_gradient_) / c_.slope;
     s_.parameters.swap(trial_);
     s_.gradient.swap(trial_gradient_);
     s_.report.cost = cost;
     if (change < options_.step_tolerance && decrease < options_.cost_tolerance)
       s_.report.reason = StopReason::converged;
-    if (++s_.successes == s_.parameters.size()) {
-      s_.direction = -s_.gradient;
-      s_.successes = 0;
+    if (++c_.successes == s_.parameters.size()) {
+      c_.direction = -s_.gradient;
+      c_.successes = 0;
     } else {
-      s_.direction = mixing * s_.direction - s_.gradient;
+      c_.direction = mixing * c_.direction - s_.gradient;
     }
   }
 
   const ScaledConjugateGradients& options_;
   Objective& objective_;
   OptimiserState& s_;
+  ConjugateDirection& c_;
   Eigen::VectorXd trial_, trial_gradient_;
 };
 

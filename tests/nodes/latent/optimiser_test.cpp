@@ -129,6 +129,17 @@ TEST_P(Optimisers, StepBackWhereTheCostCannotBeEvaluated) {
   EXPECT_EQ(p[0], -1);
 }
 
+TEST_P(Optimisers, LeaveTheParametersToWhoStopsThem) {
+  struct Stopped {};
+  Rosenbrock f;
+  const auto o = optimiser(100, 1e-9);
+  o->on_iteration = [](int, double) { throw Stopped(); };
+  const Eigen::VectorXd start = Eigen::Vector2d(-1.2, 1);
+  Eigen::VectorXd p = start;
+  EXPECT_THROW(o->minimise(f, p), Stopped);
+  EXPECT_EQ(p, start);
+}
+
 TEST_P(Optimisers, SayThatTheGradientVanishedAtTheMinimum) {
   Quadratic f;
   Eigen::VectorXd p = f.optimum;
