@@ -29,24 +29,25 @@ GradientCheck check_gradient(Objective& objective, const Eigen::VectorXd& parame
     at[i] = parameters[i];
   }
   if (!result.evaluated || parameters.size() == 0) return result;
-  const double size = std::max(1.0, result.numeric.cwiseAbs().maxCoeff());
-  result.worst = (result.analytic - result.numeric).cwiseAbs().maxCoeff(&result.where) / size;
+  const Eigen::ArrayXd size = result.numeric.cwiseAbs();
+  const double least = 1e-2 * std::max(1.0, size.maxCoeff());
+  result.error = (result.analytic - result.numeric).array().abs() / size.max(least);
+  result.worst = result.error.maxCoeff(&result.where);
   return result;
 }
 
 std::string GradientCheck::report(std::size_t rows) const {
   if (!evaluated) return "gradient check: the cost could not be evaluated at every point\n";
-  std::string text = fmt::format("gradient check of {} parameters: largest difference {:.2g}{}{}\n", analytic.size(),
-                                 worst, where < 0 ? "" : " at " + names[static_cast<std::size_t>(where)],
+  std::string text = fmt::format("gradient check of {} parameters: largest error {:.2g}{}{}\n", analytic.size(), worst,
+                                 where < 0 ? "" : " at " + names[static_cast<std::size_t>(where)],
                                  cost_consistent ? "" : "; the cost depends on whether the gradient is asked for");
-  const Eigen::VectorXd difference = (analytic - numeric).cwiseAbs();
   std::vector<Eigen::Index> order(names.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return difference[a] > difference[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return error[a] > error[b]; });
   order.resize(std::min(rows, order.size()));
   for (const auto i : order)
-    text += fmt::format("{:<32} analytic {:>15.8g}  numeric {:>15.8g}  difference {:.2g}\n",
-                        names[static_cast<std::size_t>(i)], analytic[i], numeric[i], difference[i]);
+    text += fmt::format("{:<32} analytic {:>15.8g}  numeric {:>15.8g}  error {:.2g}\n",
+                        names[static_cast<std::size_t>(i)], analytic[i], numeric[i], error[i]);
   return text;
 }
 

@@ -24,12 +24,15 @@ class Objective {
 struct GradientCheck {
   bool evaluated = false;        ///< every evaluation succeeded
   bool cost_consistent = false;  ///< the cost does not depend on whether the gradient was asked for
-  double worst = 0;              ///< largest |analytic − numeric| over max(1, largest |numeric|)
-  Eigen::Index where = -1;       ///< parameter of the largest difference
+  double worst = 0;              ///< largest error
+  Eigen::Index where = -1;       ///< its parameter
   Eigen::VectorXd analytic, numeric;
+  /// |analytic − numeric| over |numeric|, which is taken as a hundredth of max(1, largest |numeric|) where it is less:
+  /// of smaller derivatives, rounding and the steps leave too few digits.
+  Eigen::VectorXd error;
   std::vector<std::string> names;
 
-  /// One line that says how the check went and, where derivatives differ, a table of the `rows` largest differences.
+  /// One line that says how the check went and, where derivatives differ, a table of the `rows` largest errors.
   std::string report(std::size_t rows = 10) const;
 };
 
