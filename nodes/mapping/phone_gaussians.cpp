@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <set>
 
-#include "nodes/latent/cholesky.h"
 #include "nodes/latent/normal.h"
-#include "nodes/latent/scg.h"
+#include "nodes/latent/sequences.h"
 #include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
-#include "nodes/mapping/trajectory_fit.h"
+#include "nodes/mapping/trajectory_error.h"
 
 namespace talkgraph {
 
@@ -29,42 +28,15 @@ Eigen::VectorXd duration_weights(const Phones& phones) {
   return weights;
 }
 
-/// The trajectories of one sequence, a dimension at a time.
-class SequenceFit {
- public:
-  SequenceFit(const PhoneGaussians& model, const Phones& phones)
-      : model_(model),
-        phones_(phones),
-        rows_(frames_and_differences(frames(), model.order)),
-        weights_(duration_weights(phones)) {}
+StateGaussians gaussians_of(const PhoneGaussians& model) { return {model.means, model.variances, 1, model.smoothness}; }
 
-  Eigen::Index frames() const { return std::ssize(phones_); }
-
-  TrajectoryFit operator()(Eigen::Index dimension) const {
-    Eigen::VectorXd precisions = Eigen::VectorXd::Constant(rows_.rows(), model_.smoothness);
-    Eigen::VectorXd targets = Eigen::VectorXd::Zero(rows_.rows());
-    precisions.head(frames()) = weights_.array() / model_.variances.col(dimension)(phones_).array();
-    targets.head(frames()) = model_.means.col(dimension)(phones_);
-    return {rows_, std::move(precisions), std::move(targets)};
-  }
-
-  /// Adds the derivatives of a cost by means and logarithms of variances, given those by the trajectory's frames.
-  void add_gradient(const TrajectoryFit& fit, const Eigen::VectorXd& by_frames, Eigen::Index dimension,
-                    Eigen::Ref<Eigen::MatrixXd> by_means, Eigen::Ref<Eigen::MatrixXd> by_logs) const {
-    const TrajectoryFit::Gradient by = fit.gradient(by_frames);
-    for (Eigen::Index t = 0; t < frames(); ++t) {
-      const Eigen::Index phone = phones_[static_cast<std::size_t>(t)];
-      by_means(phone, dimension) += by.targets(t);
-      by_logs(phone, dimension) -= by.precisions(t) * weights_(t) / model_.variances(phone, dimension);
-    }
-  }
-
- private:
-  const PhoneGaussians& model_;
-  const Phones& phones_;
-  TrajectoryRows rows_;
-  Eigen::VectorXd weights_;
-};
+StatePath path_through(const PhoneGaussians& model, Phones phones) {
+  StatePath path;
+  path.rows = frames_and_differences(std::ssize(phones), model.order);
+  path.weights = duration_weights(phones);
+  path.states = std::move(phones);
+  return path;
+}
 
 Eigen::Index row_of(const PhoneGaussians& model, const std::string& phone) {
   const auto at = std::lower_bound(model.phones.begin(), model.phones.end(), phone);
@@ -88,54 +60,6 @@ void learn_gaussians(PhoneGaussians& model, const Eigen::MatrixXd& frames, const
 
 }  // namespace
 
-Eigen::MatrixXd trajectory(const PhoneGaussians& model, const std::vector<Eigen::Index>& phones) {
-  const SequenceFit fit(model, phones);
-  Eigen::MatrixXd values(fit.frames(), model.means.cols());
-  if (fit.frames() == 0) return values;
-  for (Eigen::Index d = 0; d < values.cols(); ++d) values.col(d) = fit(d).trajectory();
-  return values;
-}
-
-Eigen::VectorXd PhoneTrajectoryError::parameters(const PhoneGaussians& model) {
-  Eigen::VectorXd all(2 * model.means.size());
-  all << model.means.reshaped(), model.variances.array().log().matrix().reshaped();
-  return all;
-}
-
-void PhoneTrajectoryError::assign(PhoneGaussians& model, const Eigen::VectorXd& parameters) {
-  const Eigen::Index n = model.means.size();
-  model.means.reshaped() = parameters.head(n);
-  model.variances.reshaped() = parameters.tail(n).unaryExpr([](double x) { return std::exp(x); });
-}
-
-bool PhoneTrajectoryError::evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) {
-  assign(model_, parameters);
-  Eigen::MatrixXd by_means = Eigen::MatrixXd::Zero(model_.means.rows(), model_.means.cols()), by_logs = by_means;
-  cost = 0;
-  const double frames = static_cast<double>(data_.frames.rows());
-  Eigen::Index start = 0;
-  try {
-    for (const auto length : data_.lengths) {
-      const Phones phones(phones_.begin() + start, phones_.begin() + start + length);
-      const SequenceFit sequence(model_, phones);
-      for (Eigen::Index d = 0; d < model_.means.cols(); ++d) {
-        const TrajectoryFit fit = sequence(d);
-        const Eigen::VectorXd error = fit.trajectory() - data_.frames.col(d).segment(start, length);
-        cost += 0.5 * error.squaredNorm() / frames;
-        if (gradient) sequence.add_gradient(fit, error / frames, d, by_means, by_logs);
-      }
-      start += length;
-    }
-  } catch (const FactorisationError&) {
-    return false;
-  }
-  if (gradient) {
-    gradient->resize(size());
-    *gradient << by_means.reshaped(), by_logs.reshaped();
-  }
-  return std::isfinite(cost);
-}
-
 PhoneGaussians TrainPhoneGaussians::operator()(const Collected<Track>& visual, const Collected<FrameLabels>& labels,
                                                Context& context) const {
   const Labelled all = labelled(visual, labels);
@@ -151,22 +75,16 @@ PhoneGaussians TrainPhoneGaussians::operator()(const Collected<Track>& visual, c
   for (const auto& label : all.labels) rows.push_back(row_of(model, label));
   learn_gaussians(model, data.frames, rows, floor);
 
-  PhoneTrajectoryError error(model, data, rows);
-  Eigen::VectorXd parameters = PhoneTrajectoryError::parameters(model);
-  ScaledConjugateGradients descent;
-  descent.iterations = iterations;
-  descent.on_iteration = [&](int i, double) {
-    context.check_cancelled();
-    context.progress(static_cast<double>(i) / iterations);
-  };
-  OptimiserReport report = descent.minimise(error, parameters);
-  if (report.iterations > 0) PhoneTrajectoryError::assign(model, parameters);
-  const double dimensions = static_cast<double>(model.means.cols());
-  for (const double cost : report.trace) model.trace.push_back(2 * cost / dimensions);
-  context.log(
-      fmt::format("{} phones, {} frames: mean squared error of trajectories {:.4g}, {:.4g} after {} iterations ({})",
-                  model.phones.size(), data.frames.rows(), model.trace.front(), model.trace.back(), report.iterations,
-                  str(report.reason)));
+  std::vector<StatePath> paths;
+  for (auto at = rows.begin(); const auto length : data.lengths) {
+    paths.push_back(path_through(model, Phones(at, at + length)));
+    at += length;
+  }
+  StateGaussians states = gaussians_of(model);
+  model.trace =
+      lower_error(states, paths, data.frames, iterations, fmt::format("{} phones", model.phones.size()), context);
+  model.means = std::move(states.means);
+  model.variances = std::move(states.variances);
   return model;
 }
 
@@ -174,7 +92,7 @@ Track SynthesisePhoneGaussians::operator()(const PhoneGaussians& model, const Fr
   Phones rows;
   for (const auto& label : labels.labels) rows.push_back(row_of(model, label));
   Track out;
-  out.values = restored(model.scaling, trajectory(model, rows));
+  out.values = restored(model.scaling, trajectory(gaussians_of(model), path_through(model, std::move(rows))));
   out.rate = labels.rate;
   out.start = 0.5 / labels.rate.value();
   return out;

@@ -2,8 +2,6 @@
 
 #include "graph/context.h"
 #include "graph/description.h"
-#include "nodes/latent/objective.h"
-#include "nodes/latent/sequences.h"
 #include "nodes/types/phone_gaussians.h"
 #include "nodes/types/phones.h"
 #include "nodes/types/track.h"
@@ -41,28 +39,5 @@ struct SynthesisePhoneGaussians {
   Track operator()(const PhoneGaussians& model, const FrameLabels& labels) const;
 };
 void describe(Description<SynthesisePhoneGaussians>& d);
-
-/// The scaled trajectory of phones, given by their rows in the model; T × D.
-Eigen::MatrixXd trajectory(const PhoneGaussians& model, const std::vector<Eigen::Index>& phones);
-
-/// Half the mean squared error of trajectories, summed over dimensions, as a function of means and logarithms of
-/// variances.
-class PhoneTrajectoryError : public Objective {
- public:
-  /// Scaled frames, and the phone of each as a row of the model.
-  PhoneTrajectoryError(const PhoneGaussians& model, const Sequences& data, const std::vector<Eigen::Index>& phones)
-      : model_(model), data_(data), phones_(phones) {}
-
-  Eigen::Index size() const override { return 2 * model_.means.size(); }
-  bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) override;
-
-  static Eigen::VectorXd parameters(const PhoneGaussians& model);
-  static void assign(PhoneGaussians& model, const Eigen::VectorXd& parameters);
-
- private:
-  PhoneGaussians model_;
-  const Sequences& data_;
-  const std::vector<Eigen::Index>& phones_;
-};
 
 }  // namespace talkgraph
