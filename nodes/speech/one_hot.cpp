@@ -24,15 +24,16 @@ Track OneHot::operator()(const FrameLabels& labels) const {
     if (found == alphabet.end())
       throw std::runtime_error("frame " + std::to_string(t) + ": label \"" + label +
                                "\" is not in the alphabet; add it there");
-    out.values(t, found - alphabet.begin()) = 1;
+    out.values(t, found - alphabet.begin()) = weight;
   }
   return out;
 }
 
 void describe(Description<OneHot>& d) {
   d.type("speech.one_hot").summary("phone labels as indicator columns");
-  d.input("labels", "phone of every frame").output("track", "T x alphabet, zeros and ones");
+  d.input("labels", "phone of every frame").output("track", "T x alphabet, the weight in one column, else 0");
   d.param("alphabet", &OneHot::alphabet).doc("a column each; CMU phones, sil and breath by default");
+  d.param("weight", &OneHot::weight).positive().doc("of the indicators, where distances are to be measured");
 }
 
 }  // namespace talkgraph

@@ -22,4 +22,10 @@ void fields(Archive& ar, NeighboursModel& m) {
   ar("visual", m.visual);
 }
 
+void fields(Archive& ar, TrajectoriesModel& m) {
+  ar("trajectories", m.trajectories);
+  ar("ending", m.ending);
+  ar("mean", m.mean);
+}
+
 }  // namespace talkgraph

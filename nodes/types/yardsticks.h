@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
+#include <string>
 
 #include "graph/value.h"
 
@@ -42,5 +44,15 @@ struct NeighboursModel {
 template <>
 inline constexpr PortType port_type<NeighboursModel>{"NeighboursModel", 1};
 void fields(Archive& ar, NeighboursModel& m);
+
+/// The mean trajectory of each state's training windows.
+struct TrajectoriesModel {
+  std::map<std::string, Eigen::MatrixXd> trajectories;  ///< by the state's label, T × visual
+  std::map<std::string, std::string> ending;            ///< phone -> the state with most frames that ends in it
+  Eigen::RowVectorXd mean;                              ///< of all windows' frames
+};
+template <>
+inline constexpr PortType port_type<TrajectoriesModel>{"TrajectoriesModel", 1};
+void fields(Archive& ar, TrajectoriesModel& m);
 
 }  // namespace talkgraph

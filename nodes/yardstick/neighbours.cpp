@@ -9,7 +9,7 @@
 namespace talkgraph {
 
 NeighboursModel NeighboursTrain::operator()(const Collected<Track>& audio, const Collected<Track>& visual) const {
-  auto training = stack_training(audio, visual, context);
+  auto training = stack_training(audio, visual, context, scale);
   return {std::move(training.inputs), std::move(training.audio), std::move(training.visual)};
 }
 
@@ -42,6 +42,8 @@ void describe(Description<NeighboursTrain>& d) {
       .input("visual", "visual parameters of the training sequences")
       .output("model", "the training frames");
   d.param("context", &NeighboursTrain::context).within(0, 50).unit("frames").doc("neighbours on each side");
+  d.param("scale", &NeighboursTrain::scale)
+      .doc("brings every dimension of the sound to deviation 1; else they are compared as they are");
 }
 
 void describe(Description<NeighboursPredict>& d) {

@@ -6,9 +6,11 @@
 
 namespace talkgraph {
 
-/// Keeps all training frames: z-scored audio with ±`context` neighbours.
+/// Keeps all training frames: z-scored audio with ±`context` neighbours. Without `scale` distances are of audio as it
+/// is, such as z-scored features joined to weighted indicators of phones.
 struct NeighboursTrain {
   int context = 5;
+  bool scale = true;
 
   NeighboursModel operator()(const Collected<Track>& audio, const Collected<Track>& visual) const;
 };

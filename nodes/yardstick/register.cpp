@@ -3,6 +3,7 @@
 #include "nodes/yardstick/mean.h"
 #include "nodes/yardstick/neighbours.h"
 #include "nodes/yardstick/ridge.h"
+#include "nodes/yardstick/trajectories.h"
 
 namespace talkgraph {
 
@@ -13,6 +14,8 @@ void register_yardstick(Registry& registry) {
   registry.add<NeighboursTrain>();
   registry.add<RidgePredict>();
   registry.add<RidgeTrain>();
+  registry.add<TrajectoriesPredict>();
+  registry.add<TrajectoriesTrain>();
 }
 
 }  // namespace talkgraph

@@ -36,6 +36,19 @@ std::vector<Pair> pair_up(const Collected<Track>& audio, const Collected<Track>&
   return pairs;
 }
 
+/// Scales the audio of all pairs, n frames together, to mean 0 and deviation 1; what does not vary, to 0.
+void z_score(StackedInputs& inputs, const std::vector<Pair>& pairs, Eigen::Index n) {
+  Eigen::MatrixXd heard(n, inputs.mean.size());
+  Eigen::Index at = 0;
+  for (const auto& p : pairs) {
+    heard.middleRows(at, p.frames) = p.audio_values();
+    at += p.frames;
+  }
+  const CentredFrames frames = centred(heard);
+  inputs.mean = frames.mean;
+  inputs.scale = (frames.deviation.array() > 0).select(frames.deviation.cwiseInverse(), 0.0);
+}
+
 }  // namespace
 
 Eigen::MatrixXd stacked(const StackedInputs& inputs, const Track& audio) {
@@ -54,7 +67,7 @@ Eigen::MatrixXd stacked(const StackedInputs& inputs, const Track& audio) {
   return out;
 }
 
-StackedTraining stack_training(const Collected<Track>& audio, const Collected<Track>& visual, int context) {
+StackedTraining stack_training(const Collected<Track>& audio, const Collected<Track>& visual, int context, bool scale) {
   const auto pairs = pair_up(audio, visual);
   Eigen::Index total = 0;
   for (const auto& p : pairs) total += p.frames;
@@ -63,15 +76,9 @@ StackedTraining stack_training(const Collected<Track>& audio, const Collected<Tr
   StackedTraining out;
   out.inputs.context = context;
   const auto dimension = pairs[0].audio->dimension();
-  Eigen::MatrixXd heard(total, dimension);
-  Eigen::Index at = 0;
-  for (const auto& p : pairs) {
-    heard.middleRows(at, p.frames) = p.audio_values();
-    at += p.frames;
-  }
-  const CentredFrames audio_frames = centred(heard);
-  out.inputs.mean = audio_frames.mean;
-  out.inputs.scale = (audio_frames.deviation.array() > 0).select(audio_frames.deviation.cwiseInverse(), 0.0);
+  out.inputs.mean = Eigen::RowVectorXd::Zero(dimension);
+  out.inputs.scale = Eigen::RowVectorXd::Ones(dimension);
+  if (scale) z_score(out.inputs, pairs, total);
 
   out.audio.resize(total, dimension * (2 * context + 1));
   out.visual.resize(total, pairs[0].visual->dimension());

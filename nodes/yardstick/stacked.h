@@ -18,7 +18,8 @@ struct StackedTraining {
 };
 
 /// Pairs audio and visual tracks by key. Throws std::runtime_error if none pair,
-/// on NaN, and where dimensions differ or lengths do by more than two frames.
-StackedTraining stack_training(const Collected<Track>& audio, const Collected<Track>& visual, int context);
+/// on NaN, and where dimensions differ or lengths do by more than two frames. Without `scale` audio stays as it is.
+StackedTraining stack_training(const Collected<Track>& audio, const Collected<Track>& visual, int context,
+                               bool scale = true);
 
 }  // namespace talkgraph

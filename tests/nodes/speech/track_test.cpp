@@ -100,6 +100,7 @@ TEST(OneHot, MarksTheLabelOfEachFrame) {
   EXPECT_EQ(t.values, expected);
   EXPECT_DOUBLE_EQ(t.start, 0.01);
   EXPECT_EQ(t.names[2], "b");
+  EXPECT_EQ((OneHot{{"sil", "aa", "b"}, 2.5}(FrameLabels{{"aa", "sil", "aa"}}).values), 2.5 * expected);
 }
 
 TEST(OneHot, KnowsTheCmuPhonesAndRefusesOthers) {

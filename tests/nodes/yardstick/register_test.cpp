@@ -11,7 +11,8 @@ TEST(Register, DescribesEveryNode) {
   register_yardstick(registry);
   EXPECT_THAT(registry.names(),
               testing::ElementsAre("yardstick.mean", "yardstick.mean_train", "yardstick.neighbours",
-                                   "yardstick.neighbours_train", "yardstick.ridge", "yardstick.ridge_train"));
+                                   "yardstick.neighbours_train", "yardstick.ridge", "yardstick.ridge_train",
+                                   "yardstick.trajectories", "yardstick.trajectories_train"));
 }
 
 }  // namespace

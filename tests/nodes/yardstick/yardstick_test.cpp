@@ -8,6 +8,7 @@
 #include "nodes/yardstick/neighbours.h"
 #include "nodes/yardstick/ridge.h"
 #include "nodes/yardstick/stacked.h"
+#include "nodes/yardstick/trajectories.h"
 
 namespace talkgraph {
 namespace {
@@ -84,6 +85,76 @@ TEST(Neighbours, FindsATrainingFrameItself) {
   const Track a = track(Eigen::MatrixXd::Random(50, 4)), v = track(Eigen::MatrixXd::Random(50, 2));
   const auto model = NeighboursTrain{}({{"x", a}}, {{"x", v}});
   EXPECT_TRUE(NeighboursPredict{1}(model, a).values.isApprox(v.values));
+}
+
+TEST(Neighbours, ComparesDimensionsAsTheyAreWithoutScale) {
+  Eigen::MatrixXd a(3, 2), q(1, 2);
+  a << 0, 0, 100, 0, 0, 3;
+  q << 40, 2;
+  const Track v = track(Eigen::Vector3d(1, 2, 3));
+  const auto nearest = [&](bool scale) {
+    const auto model = NeighboursTrain{.context = 0, .scale = scale}({{"x", track(a)}}, {{"x", v}});
+    return NeighboursPredict{1}(model, track(q)).values(0, 0);
+  };
+  EXPECT_EQ(nearest(true), 3);
+  EXPECT_EQ(nearest(false), 3);
+  q << 51, 2;
+  EXPECT_EQ(nearest(true), 3);
+  EXPECT_EQ(nearest(false), 2);
+}
+
+StateData state(std::string label, std::vector<Eigen::MatrixXd> windows) {
+  return {std::move(label), windows, windows};
+}
+
+TrajectoriesModel trained(const std::vector<StateData>& states) {
+  Collected<StateData> all;
+  for (const auto& s : states) all.add(s.label, s);
+  return TrajectoriesTrain{}(all);
+}
+
+TEST(Trajectories, AreMeansOfStretchedWindows) {
+  const auto model = trained({state("k-ae", {Eigen::Vector3d(0, 3, 6), Eigen::Vector3d(2, 5, 14)}),
+                              state("ae", {Eigen::Vector4d(0, 1, 2, 3), Eigen::Vector2d(10, 20)})});
+  EXPECT_EQ(model.trajectories.at("k-ae"), Eigen::Vector3d(1, 4, 10));
+  // Three frames out of four and of two.
+  const Eigen::Vector3d four(1.0 / 6, 1.5, 17.0 / 6), two(10, 15, 20);
+  EXPECT_TRUE(model.trajectories.at("ae").isApprox((four + two) / 2, 1e-12));
+  EXPECT_NEAR(model.mean(0), 66.0 / 12, 1e-12);
+  SegmentTrack segments{{{"k-ae", 0, 3}, {"k-ae", 3, 1}}, 4, Rational{50}};
+  const Track p = TrajectoriesPredict{}(model, segments);
+  EXPECT_EQ(p.values, Eigen::Vector4d(1, 4, 10, 4));
+  EXPECT_EQ(p.rate.value(), 50);
+  EXPECT_EQ(p.start, 0.01);
+}
+
+TEST(Trajectories, AnswerEveryLabel) {
+  const auto level = [](double value, Eigen::Index frames) {
+    return std::vector<Eigen::MatrixXd>{Eigen::MatrixXd::Constant(frames, 1, value)};
+  };
+  const auto model =
+      trained({state("t-ae", level(1, 2)), state("b-iy", level(2, 2)), state("k-iy", level(3, 5)), state("empty", {})});
+  const auto answer = [&](const std::string& label) {
+    return TrajectoriesPredict{}(model, {{{label, 0, 1}}, 1}).values(0, 0);
+  };
+  EXPECT_EQ(answer("t-ae"), 1);
+  EXPECT_EQ(answer("s-t-ae"), 1);
+  EXPECT_EQ(answer("s-iy"), 3);
+  EXPECT_NEAR(answer("zh"), (2 + 4 + 15) / 9.0, 1e-12);
+  EXPECT_EQ(answer("empty"), answer("zh"));
+  EXPECT_EQ(TrajectoriesPredict{}(model, {}).frames(), 0);
+}
+
+TEST(Trajectories, RefuseWhatIsNoTrainingAndGaps) {
+  EXPECT_THROW(trained({}), std::runtime_error);
+  EXPECT_THROW(trained({state("a", {})}), std::runtime_error);
+  EXPECT_THROW(trained({state("a", {Eigen::MatrixXd::Constant(2, 1, NAN)})}), std::runtime_error);
+  EXPECT_THROW(trained({state("a", {Eigen::MatrixXd::Zero(2, 1), Eigen::MatrixXd::Zero(2, 2)})}), std::runtime_error);
+  const auto model = trained({state("a", {Eigen::MatrixXd::Zero(2, 1)})});
+  EXPECT_THROW(TrajectoriesPredict{}(model, {{{"a", 1, 1}}, 2}), std::runtime_error);
+  EXPECT_THROW(TrajectoriesPredict{}(model, {{{"a", 0, 1}}, 2}), std::runtime_error);
+  EXPECT_THROW(TrajectoriesPredict{}(model, {{{"a", 0, 3}}, 2}), std::runtime_error);
+  EXPECT_THROW(TrajectoriesPredict{}(model, {{{"a", 0, 0}}, 0}), std::runtime_error);
 }
 
 TEST(Yardsticks, PairByKeyAndUseTheCommonBeginning) {
