@@ -9,12 +9,6 @@ namespace talkgraph {
 
 namespace {
 
-Eigen::Index common_frames(const std::string& key, Eigen::Index a, const char* of_a, Eigen::Index b, const char* of_b) {
-  if (std::abs(a - b) > 2)
-    throw std::runtime_error(fmt::format("{}: {} {}, {} {}: bring both to one rate", key, a, of_a, b, of_b));
-  return std::min(a, b);
-}
-
 Track beginning(const Track& track, Eigen::Index frames) {
   Track t = track;
   t.values.conservativeResize(frames, Eigen::NoChange);
@@ -23,6 +17,13 @@ Track beginning(const Track& track, Eigen::Index frames) {
 }
 
 }  // namespace
+
+Eigen::Index common_frames(const std::string& utterance, Eigen::Index a, const char* of_a, Eigen::Index b,
+                           const char* of_b) {
+  if (std::abs(a - b) > 2)
+    throw std::runtime_error(fmt::format("{}: {} {}, {} {}: bring both to one rate", utterance, a, of_a, b, of_b));
+  return std::min(a, b);
+}
 
 SideBySide side_by_side(const Collected<Track>& audio, const Collected<Track>& visual) {
   SideBySide both;
@@ -34,8 +35,8 @@ SideBySide side_by_side(const Collected<Track>& audio, const Collected<Track>& v
     const Eigen::Index dims = audio[i].dimension();
     if (both.tracks.empty()) both.audio = dims;
     if (dims != both.audio)
-      throw std::runtime_error(fmt::format("{}: {} audio dimensions, those before it {}: train all on the same features",
-                                           key, dims, both.audio));
+      throw std::runtime_error(fmt::format(
+          "{}: {} audio dimensions, those before it {}: train all on the same features", key, dims, both.audio));
     Track t = beginning(*seen, frames);
     t.names.clear();
     t.values.resize(frames, dims + seen->dimension());
@@ -53,8 +54,8 @@ Labelled labelled(const Collected<Track>& tracks, const Collected<FrameLabels>& 
     const std::string& key = tracks.key(i);
     const FrameLabels* phones = labels.find(key);
     if (!phones) continue;
-    Track t = beginning(
-        tracks[i], common_frames(key, tracks[i].frames(), "frames", std::ssize(phones->labels), "labels"));
+    Track t =
+        beginning(tracks[i], common_frames(key, tracks[i].frames(), "frames", std::ssize(phones->labels), "labels"));
     for (Eigen::Index n = 0; n < t.frames(); ++n)
       if (!t.is_lost(n)) all.labels.push_back(phones->labels[static_cast<std::size_t>(n)]);
     all.tracks.add(key, std::move(t));

@@ -5,17 +5,20 @@
 
 namespace talkgraph {
 
-/// The utterances that all streams have, by key, each on its common beginning; their lengths differ by at most two
-/// frames. Throws std::runtime_error, naming the utterance, if they differ by more, and if no utterance is left.
+/// The frames that two streams of one utterance have in common at their beginning. Throws std::runtime_error, naming
+/// it, if they differ by more than two.
+Eigen::Index common_frames(const std::string& utterance, Eigen::Index a, const char* of_a, Eigen::Index b,
+                           const char* of_b);
 
-/// Audio and visual frames side by side, lost where the face is.
+/// Audio and visual frames side by side, lost where the face is, of the utterances that both streams have. Throws
+/// std::runtime_error as common_frames(), and if there is none.
 struct SideBySide {
   Collected<Track> tracks;  ///< T × (D_Y + D_Z)
   Eigen::Index audio = 0;   ///< D_Y
 };
 SideBySide side_by_side(const Collected<Track>& audio, const Collected<Track>& visual);
 
-/// Tracks with a label a frame.
+/// Tracks with a label a frame, likewise.
 struct Labelled {
   Collected<Track> tracks;
   std::vector<std::string> labels;  ///< of all frames that are not lost, one track after the other

@@ -1,16 +1,22 @@
 #include "nodes/mapping/register.h"
 
+#include "nodes/mapping/joint_gmm.h"
 #include "nodes/mapping/phone_gaussians.h"
 #include "nodes/mapping/ssgpdm.h"
 #include "nodes/mapping/ssgpdm_synthesise.h"
+#include "nodes/mapping/windowed_cca.h"
 
 namespace talkgraph {
 
 void register_mapping(Registry& registry) {
   registry.add<AssembleSsgpdm>();
+  registry.add<SynthesiseJointGmm>();
   registry.add<SynthesisePhoneGaussians>();
   registry.add<SynthesiseSsgpdm>();
+  registry.add<SynthesiseWindowedCca>();
+  registry.add<TrainJointGmm>();
   registry.add<TrainPhoneGaussians>();
+  registry.add<TrainWindowedCca>();
 }
 
 }  // namespace talkgraph

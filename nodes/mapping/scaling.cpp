@@ -14,6 +14,10 @@ Scaling scaling_of(const Eigen::MatrixXd& frames) {
   return s;
 }
 
+Scaling part_of(const Scaling& scaling, Eigen::Index from, Eigen::Index dims) {
+  return {scaling.mean.segment(from, dims), scaling.deviation.segment(from, dims)};
+}
+
 Eigen::MatrixXd scaled(const Scaling& scaling, const Eigen::MatrixXd& frames) {
   const Eigen::RowVectorXd inverse =
       (scaling.deviation.array() > 0).select(scaling.deviation.cwiseInverse().array(), 0.0);
