@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "nodes/latent/em.h"
 #include "nodes/latent/gmm.h"
 #include "nodes/latent/sequences.h"
 #include "nodes/mapping/paired.h"
@@ -85,7 +86,7 @@ JointGmm TrainJointGmm::operator()(const Collected<Track>& audio, const Collecte
   TrainGmm mixture;
   mixture.components = components;
   mixture.floor = floor;
-  mixture.iterations = em_iterations;
+  mixture.iterations = iterations;
   mixture.tolerance = tolerance;
   const Gmm trained = mixture.fit(joint, random, context);
   model.trace = trained.trace;
@@ -99,7 +100,7 @@ JointGmm TrainJointGmm::operator()(const Collected<Track>& audio, const Collecte
   }
   StateGaussians states = gaussians_of(model);
   model.errors =
-      lower_error(states, paths, seen, iterations, fmt::format("{} components", model.sound.components()), context);
+      lower_error(states, paths, seen, descent, fmt::format("{} components", model.sound.components()), context);
   model.means = std::move(states.means);
   model.variances = std::move(states.variances);
   return model;
@@ -119,16 +120,10 @@ void describe(Description<TrainJointGmm>& d) {
       .input("visual", "visual parameters of the training sequences")
       .output("model", "the mixture of the sound, and the face given each component");
   d.param("components", &TrainJointGmm::components).at_least(1).doc("fewer if there are fewer distinct frames");
-  d.param("floor", &TrainJointGmm::floor)
-      .positive()
-      .doc("least variance of a component in any direction, as a share of the frames' variance a dimension");
-  d.param("em_iterations", &TrainJointGmm::em_iterations).at_least(0).doc("limit of expectation maximisation");
-  d.param("tolerance", &TrainJointGmm::tolerance)
+  describe_em(d, "a component");
+  d.param("descent", &TrainJointGmm::descent)
       .at_least(0)
-      .doc("it ends when the log-likelihood gains no more than this in an iteration, a frame");
-  d.param("iterations", &TrainJointGmm::iterations)
-      .at_least(0)
-      .doc("limit of the descent on the error of trajectories; 0 leaves the likeliest mixture");
+      .doc("most steps down the error of trajectories; 0 leaves the likeliest mixture");
 }
 
 void describe(Description<SynthesiseJointGmm>& d) {

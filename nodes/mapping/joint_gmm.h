@@ -23,9 +23,9 @@ namespace talkgraph {
 struct TrainJointGmm {
   int components = 16;
   double floor = 1e-2;
-  int em_iterations = 50;
+  int iterations = 50;
   double tolerance = 1e-4;
-  int iterations = 20;
+  int descent = 20;
 
   JointGmm operator()(const Collected<Track>& audio, const Collected<Track>& visual, Random& random,
                       Context& context) const;

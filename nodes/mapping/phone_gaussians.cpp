@@ -82,7 +82,7 @@ PhoneGaussians TrainPhoneGaussians::operator()(const Collected<Track>& visual, c
   }
   StateGaussians states = gaussians_of(model);
   model.trace =
-      lower_error(states, paths, data.frames, iterations, fmt::format("{} phones", model.phones.size()), context);
+      lower_error(states, paths, data.frames, descent, fmt::format("{} phones", model.phones.size()), context);
   model.means = std::move(states.means);
   model.variances = std::move(states.variances);
   return model;
@@ -112,9 +112,9 @@ void describe(Description<TrainPhoneGaussians>& d) {
   d.param("floor", &TrainPhoneGaussians::floor)
       .positive()
       .doc("least variance that descent starts from, as a share of the frames' variance");
-  d.param("iterations", &TrainPhoneGaussians::iterations)
+  d.param("descent", &TrainPhoneGaussians::descent)
       .at_least(0)
-      .doc("limit of the descent on the error of trajectories; 0 leaves means and variances as the frames have them");
+      .doc("most steps down the error of trajectories; 0 leaves means and variances as the frames have them");
 }
 
 void describe(Description<SynthesisePhoneGaussians>& d) {

@@ -26,7 +26,7 @@ struct TrainPhoneGaussians {
   double smoothness = 1;
   int order = 2;
   double floor = 1e-3;
-  int iterations = 60;
+  int descent = 60;
 
   PhoneGaussians operator()(const Collected<Track>& visual, const Collected<FrameLabels>& labels,
                             Context& context) const;

@@ -81,8 +81,8 @@ TEST(JointGmm, DescentComesCloserToTheTrajectoriesThatTheDataWereDrawnFrom) {
   const auto error = [&](const JointGmm& model) {
     return (SynthesiseJointGmm{}(model, sound).values - optimal).squaredNorm() / spread;
   };
-  const JointGmm likeliest = trained({.components = 2, .iterations = 0}, corpus),
-                 refined = trained({.components = 2, .iterations = 100}, corpus);
+  const JointGmm likeliest = trained({.components = 2, .descent = 0}, corpus),
+                 refined = trained({.components = 2, .descent = 100}, corpus);
   EXPECT_LT(error(refined), 0.02);
   EXPECT_LT(error(refined), error(likeliest));
   EXPECT_LT(testing::largest_fall(refined.trace), 1e-12);
@@ -107,7 +107,7 @@ TEST(JointGmm, OfOneComponentIsLinearRegression) {
 
 TEST(JointGmm, ConditionsTheFaceOnTheSound) {
   const Corpus corpus = drawn_from(two_components(), 3, 0.5);
-  const JointGmm model = trained({.components = 1, .floor = 1e-6, .iterations = 0}, corpus);
+  const JointGmm model = trained({.components = 1, .floor = 1e-6, .descent = 0}, corpus);
   // Least squares of the scaled face with its slopes on the sound with its.
   const auto with_slopes = [](const Scaling& scaling, const Collected<Track>& tracks) {
     const Eigen::Index dims = scaling.mean.size();

@@ -71,10 +71,10 @@ TEST(PhoneGaussians, DescentFindsTheTrajectoriesThatTheDataWereDrawnFrom) {
   TrainPhoneGaussians train;
   train.smoothness = truth.smoothness;
   train.order = 2;
-  train.iterations = 200;
+  train.descent = 200;
   Context context;
   const PhoneGaussians found = train(corpus.visual, corpus.labels, context);
-  train.iterations = 0;
+  train.descent = 0;
   const PhoneGaussians untrained = train(corpus.visual, corpus.labels, context);
   const Phones phones = some_phones(200, 1);
   const Eigen::MatrixXd optimal = trajectory(truth, phones);
@@ -99,7 +99,7 @@ TEST(PhoneGaussians, AreMeansAndVariancesBeforeTheDescent) {
   FrameLabels labels{{"b", "b", "b", "aa", "aa", "aa"}};
   Context context;
   TrainPhoneGaussians train;
-  train.iterations = 0;
+  train.descent = 0;
   const PhoneGaussians model = train({{"u", visual}}, {{"u", labels}}, context);
   const double mean = 6.2, variance = (5.2 * 5.2 + 3.2 * 3.2 + 0.2 * 0.2 + 2.8 * 2.8 + 5.8 * 5.8) / 5;
   EXPECT_EQ(model.phones, (std::vector<std::string>{"aa", "b"}));
