@@ -72,7 +72,7 @@ Track SynthesiseWindowedCca::operator()(const WindowedCca& model, const Track& a
   const Eigen::MatrixXd heard = windows_of(scaled(model.audio, audio.values), model.context).values;
   const Eigen::MatrixXd shown =
       ((heard.rowwise() - model.audio_mean) * model.directions * model.weights).rowwise() + model.visual_mean;
-  const Eigen::Index frames = audio.frames(), dims = model.visual.mean.size(), reach = overlap ? model.context : 0;
+  const Eigen::Index frames = audio.frames(), dims = model.visual.mean.size(), reach = model.context;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(frames, dims);
   for (Eigen::Index t = 0; t < frames; ++t) {
     const Eigen::Index first = std::max<Eigen::Index>(t - reach, 0), last = std::min(t + reach, frames - 1);
@@ -103,8 +103,6 @@ void describe(Description<SynthesiseWindowedCca>& d) {
   d.input("model", "of mapping.windowed_cca")
       .input("audio", "speech features at the video rate")
       .output("visual", "visual parameters");
-  d.param("overlap", &SynthesiseWindowedCca::overlap)
-      .doc("a frame is the mean of what all windows that hold it say; else what the window around it says");
 }
 
 }  // namespace talkgraph

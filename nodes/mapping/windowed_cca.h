@@ -17,16 +17,14 @@ namespace talkgraph {
 /// frames, on different dimensions, and on values that are not finite.
 struct TrainWindowedCca {
   int context = 4;
-  int dimensions = 20;
+  int dimensions = 60;
 
   WindowedCca operator()(const Collected<Track>& audio, const Collected<Track>& visual, Context& context) const;
 };
 void describe(Description<TrainWindowedCca>& d);
 
-/// Each frame the mean of what all windows that hold it say, or without `overlap` what the window around it says.
+/// Each frame the mean of what all windows that hold it say.
 struct SynthesiseWindowedCca {
-  bool overlap = true;
-
   Track operator()(const WindowedCca& model, const Track& audio) const;
 };
 void describe(Description<SynthesiseWindowedCca>& d);
