@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 
 #include "nodes/latent/em.h"
+#include "nodes/latent/lds_expectations.h"
 #include "nodes/latent/linear_models.h"
 
 namespace talkgraph {
@@ -28,27 +30,52 @@ Root root_of(const Eigen::MatrixXd& covariance, const char* what) {
   return root;
 }
 
-/// Frames and B in units of the observation noise.
+/// B of a system, and frames that it gives, in units of the observation noise.
 struct Whitened {
-  Whitened(const Lds& model, const Eigen::MatrixXd& frames)
-      : columns((frames.rowwise() - model.mean).transpose()), observation(model.observation) {
+  explicit Whitened(const Lds& of) : model(of), observation(of.observation) {
     if (model.observation_noise.cols() == 1) {
       if (!(model.observation_noise.array() > 0).all()) refuse("the observations' noise", model.dimension());
-      const Eigen::VectorXd deviations = model.observation_noise.cwiseSqrt();
-      columns = deviations.cwiseInverse().asDiagonal() * columns;
-      observation = deviations.cwiseInverse().asDiagonal() * observation;
+      deviations = model.observation_noise.cwiseSqrt();
       log_determinant = 2 * deviations.array().log().sum();
     } else {
-      const Root root = root_of(model.observation_noise, "the observations' noise");
-      root.matrixL().solveInPlace(columns);
-      root.matrixL().solveInPlace(observation);
+      root = root_of(model.observation_noise, "the observations' noise");
       log_determinant = 2 * root.matrixLLT().diagonal().array().log().sum();
     }
+    whiten(observation);
     precision = observation.transpose() * observation;
   }
-  Eigen::MatrixXd columns, observation;  ///< D × T, D × d
-  Eigen::MatrixXd precision;             ///< BᵀΓ⁻¹B
-  double log_determinant = 0;            ///< ln|Γ|
+  void whiten(Eigen::MatrixXd& columns) const {
+    if (deviations.size() > 0)
+      columns = deviations.cwiseInverse().asDiagonal() * columns;
+    else
+      root.matrixL().solveInPlace(columns);
+  }
+  Eigen::MatrixXd columns(const Eigen::MatrixXd& frames) const {
+    Eigen::MatrixXd columns = (frames.rowwise() - model.mean).transpose();
+    whiten(columns);
+    return columns;
+  }
+
+  const Lds& model;
+  Eigen::VectorXd deviations;   ///< of diagonal noise
+  Root root;                    ///< of other noise
+  Eigen::MatrixXd observation;  ///< D × d
+  Eigen::MatrixXd precision;    ///< BᵀΓ⁻¹B
+  double log_determinant = 0;   ///< ln|Γ|
+};
+
+/// The frames of a sequence, each in units of the noise of the system that gives it.
+struct WhitenedFrames {
+  WhitenedFrames(const LdsRegimes& regimes, const Eigen::MatrixXd& frames) : columns(frames.cols(), frames.rows()) {
+    std::map<const Lds*, std::vector<Eigen::Index>> times;
+    for (std::size_t t = 0; t < regimes.size(); ++t) times[regimes[t]].push_back(static_cast<Eigen::Index>(t));
+    for (const auto& [model, of_model] : times) {
+      const auto white = systems.emplace(model, *model).first;
+      columns(Eigen::all, of_model) = white->second.columns(frames(of_model, Eigen::all));
+    }
+  }
+  std::map<const Lds*, Whitened> systems;
+  Eigen::MatrixXd columns;  ///< D × T
 };
 
 /// What a filter predicts of a frame's state from those before it.
@@ -70,13 +97,13 @@ Prediction predict(const Lds& model, const LdsPosterior& p, Eigen::Index t) {
       root_of(model.prediction * before * model.prediction.transpose() + model.prediction_noise, "a predicted state")};
 }
 
-Filtered filter(const Lds& model, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
-  const Whitened white(model, frames);
-  const double constant =
-      white.log_determinant + static_cast<double>(model.dimension()) * std::log(2 * std::numbers::pi);
+Filtered filter(const LdsRegimes& regimes, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
+  const WhitenedFrames whitened(regimes, frames);
+  const double constant = static_cast<double>(frames.cols()) * std::log(2 * std::numbers::pi);
   Filtered f;
-  f.posterior.means.resize(frames.rows(), model.states());
+  f.posterior.means.resize(frames.rows(), regimes.front()->states());
   for (Eigen::Index t = 0; t < frames.rows(); ++t) {
+    const Lds& model = *regimes[static_cast<std::size_t>(t)];
     f.predictions.push_back(predict(model, f.posterior, t));
     const Prediction& predicted = f.predictions.back();
     if (std::binary_search(lost.begin(), lost.end(), t)) {
@@ -84,92 +111,22 @@ Filtered filter(const Lds& model, const Eigen::MatrixXd& frames, const std::vect
       f.posterior.covariances.push_back(predicted.covariance.reconstructedMatrix());
       continue;
     }
+    const Whitened& white = whitened.systems.at(&model);
     const Eigen::MatrixXd l = predicted.covariance.matrixL();
     Eigen::MatrixXd inner = l.transpose() * white.precision * l;
     inner.diagonal().array() += 1;
     const Root root = root_of(inner, "an observed state");
-    Eigen::VectorXd error = white.columns.col(t) - white.observation * predicted.mean;
+    Eigen::VectorXd error = whitened.columns.col(t) - white.observation * predicted.mean;
     const Eigen::VectorXd step = root.solve(l.transpose() * (white.observation.transpose() * error));
     f.posterior.means.row(t) = (predicted.mean + l * step).transpose();
     const Eigen::MatrixXd half = root.matrixL().solve(l.transpose());
     f.posterior.covariances.push_back(half.transpose() * half);
     error -= white.observation * (l * step);
-    f.posterior.log_likelihood -= 0.5 * (constant + 2 * root.matrixLLT().diagonal().array().log().sum() +
-                                         error.squaredNorm() + step.squaredNorm());
+    f.posterior.log_likelihood -=
+        0.5 * (white.log_determinant + constant + 2 * root.matrixLLT().diagonal().array().log().sum() +
+               error.squaredNorm() + step.squaredNorm());
   }
   return f;
-}
-
-/// Sums of expectations over all frames.
-struct Expectations {
-  Expectations(Eigen::Index d)
-      : from(Eigen::MatrixXd::Zero(d + 1, d + 1)),
-        to(Eigen::MatrixXd::Zero(d, d)),
-        across(Eigen::MatrixXd::Zero(d, d + 1)),
-        first(Eigen::MatrixXd::Zero(0, d)),
-        first_covariance(Eigen::MatrixXd::Zero(d, d)),
-        covariance(Eigen::MatrixXd::Zero(d, d)),
-        means(0, d) {}
-
-  void add(const LdsPosterior& p) {
-    const Eigen::Index frames = p.means.rows(), d = p.means.cols();
-    Eigen::MatrixXd extended(frames, d + 1);
-    extended << p.means, Eigen::VectorXd::Ones(frames);
-    from += extended.topRows(frames - 1).transpose() * extended.topRows(frames - 1);
-    to += p.means.bottomRows(frames - 1).transpose() * p.means.bottomRows(frames - 1);
-    across += p.means.bottomRows(frames - 1).transpose() * extended.topRows(frames - 1);
-    for (std::size_t t = 0; t < p.covariances.size(); ++t) {
-      covariance += p.covariances[t];
-      if (t + 1 < p.covariances.size()) from.topLeftCorner(d, d) += p.covariances[t];
-      if (t > 0) to += p.covariances[t];
-      if (t > 0) across.leftCols(d) += p.lagged[t - 1];
-    }
-    first.conservativeResize(first.rows() + 1, Eigen::NoChange);
-    first.bottomRows(1) = p.means.topRows(1);
-    first_covariance += p.covariances.front();
-    means.conservativeResize(means.rows() + frames, Eigen::NoChange);
-    means.bottomRows(frames) = p.means;
-  }
-
-  Eigen::MatrixXd from, to, across;  ///< of [x_{t−1}; 1], x_t, and the one with the other
-  Eigen::MatrixXd first;             ///< means of first states, S × d
-  Eigen::MatrixXd first_covariance, covariance;
-  Eigen::MatrixXd means;  ///< N × d
-};
-
-struct Floors {
-  Eigen::VectorXd states, observations;
-};
-
-void maximise_dynamics(Lds& model, const Expectations& e, const Floors& floors) {
-  const Eigen::Index d = model.states();
-  const double steps = e.from(d, d);
-  if (steps == 0) return;
-  const Eigen::MatrixXd map = root_of(e.from, "the states").solve(e.across.transpose()).transpose();
-  model.prediction = map.leftCols(d);
-  model.offset = map.col(d);
-  const Eigen::MatrixXd shared = map * e.across.transpose();
-  const Eigen::MatrixXd left = e.to - shared - shared.transpose() + map * e.from * map.transpose();
-  model.prediction_noise = floored(0.5 / steps * (left + left.transpose()), floors.states);
-}
-
-void maximise(Lds& model, const Eigen::MatrixXd& frames, const Expectations& e, const Floors& floors,
-              CovarianceKind kind) {
-  const double count = static_cast<double>(frames.rows()), sequences = static_cast<double>(e.first.rows());
-  maximise_dynamics(model, e, floors);
-
-  model.first_mean = e.first.colwise().mean().transpose();
-  const Eigen::MatrixXd spread = e.first.rowwise() - model.first_mean.transpose();
-  model.first_covariance = floored((spread.transpose() * spread + e.first_covariance) / sequences, floors.states);
-
-  const Eigen::MatrixXd centred = frames.rowwise() - model.mean;
-  const Eigen::MatrixXd squares = e.means.transpose() * e.means + e.covariance;
-  model.observation = root_of(squares, "the states").solve(e.means.transpose() * centred).transpose();
-  const Eigen::MatrixXd errors = centred - e.means * model.observation.transpose();
-  Eigen::MatrixXd noise = scatter(errors, Eigen::VectorXd::Ones(frames.rows()), kind);
-  const Eigen::MatrixXd hidden = model.observation * (e.covariance / count) * model.observation.transpose();
-  noise += kind == CovarianceKind::full ? hidden : Eigen::MatrixXd(hidden.diagonal());
-  model.observation_noise = floored(noise, floors.observations);
 }
 
 /// Each frame beside those before it, the first standing for what is before a sequence.
@@ -186,12 +143,12 @@ Eigen::MatrixXd stacked(const Sequences& data, Eigen::Index lags) {
   return rows;
 }
 
-Lds start_lds(const Sequences& data, const TrainLds& options, const Floors& floors) {
+Lds start_lds(const Sequences& data, const TrainLds& options, const LdsFloors& floors, Eigen::Index apart) {
   const Eigen::Index d = options.latent_dimension, dims = data.frames.cols();
   const Eigen::MatrixXd rows = stacked(data, (d + dims - 1) / dims);
   const Ppca ppca = fit_ppca(rows, d);
   const Eigen::MatrixXd x = ppca.posterior_mean(rows), covariance = ppca.posterior_covariance();
-  Expectations e(d);
+  LdsExpectations e(d);
   Eigen::Index from = 0;
   for (const Eigen::Index length : data.lengths) {
     const auto steps = static_cast<std::size_t>(length);
@@ -204,13 +161,13 @@ Lds start_lds(const Sequences& data, const TrainLds& options, const Floors& floo
   model.prediction.setZero(d, d);
   model.offset.setZero(d);
   model.prediction_noise.setIdentity(d, d);
-  maximise(model, data.frames, e, floors, options.covariance);
+  maximise(model, data.frames, e, floors, options.covariance, apart);
   model.first_covariance.setIdentity(d, d);
   return model;
 }
 
-double expect(const Lds& model, const Sequences& data, Expectations& e) {
-  e = Expectations(model.states());
+double expect(const Lds& model, const Sequences& data, LdsExpectations& e) {
+  e = LdsExpectations(model.states());
   double log_likelihood = 0;
   Eigen::Index from = 0;
   for (const Eigen::Index length : data.lengths) {
@@ -224,16 +181,19 @@ double expect(const Lds& model, const Sequences& data, Expectations& e) {
 
 }  // namespace
 
-LdsPosterior kalman_filter(const Lds& model, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
-  return filter(model, frames, lost).posterior;
+LdsPosterior kalman_filter(const LdsRegimes& regimes, const Eigen::MatrixXd& frames,
+                           const std::vector<std::int64_t>& lost) {
+  return filter(regimes, frames, lost).posterior;
 }
 
-LdsPosterior kalman_smoother(const Lds& model, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
-  Filtered f = filter(model, frames, lost);
+LdsPosterior kalman_smoother(const LdsRegimes& regimes, const Eigen::MatrixXd& frames,
+                             const std::vector<std::int64_t>& lost) {
+  Filtered f = filter(regimes, frames, lost);
   LdsPosterior& p = f.posterior;
   p.lagged.resize(p.covariances.size() - 1);
   for (std::size_t t = p.lagged.size(); t-- > 0;) {
     const auto row = static_cast<Eigen::Index>(t);
+    const Lds& model = *regimes[t + 1];
     const Prediction& next = f.predictions[t + 1];
     Eigen::MatrixXd& covariance = p.covariances[t];
     const Eigen::MatrixXd gain = next.covariance.solve(model.prediction * covariance).transpose();
@@ -246,17 +206,36 @@ LdsPosterior kalman_smoother(const Lds& model, const Eigen::MatrixXd& frames, co
   return std::move(p);
 }
 
+LdsPosterior kalman_filter(const Lds& model, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
+  return kalman_filter(LdsRegimes(static_cast<std::size_t>(frames.rows()), &model), frames, lost);
+}
+
+LdsPosterior kalman_smoother(const Lds& model, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
+  return kalman_smoother(LdsRegimes(static_cast<std::size_t>(frames.rows()), &model), frames, lost);
+}
+
 Eigen::MatrixXd observations(const Lds& model, const Eigen::MatrixXd& states) {
   return (states * model.observation.transpose()).rowwise() + model.mean;
 }
 
-Lds TrainLds::fit(const Sequences& data, Context& context) const {
-  const Floors floors{Eigen::VectorXd::Constant(latent_dimension, state_floor), variance_floors(data.frames, floor)};
-  Lds model = start_lds(data, *this, floors);
-  Expectations given(model.states());
+Lds observed_part(const Lds& model, Eigen::Index from, Eigen::Index dims) {
+  Lds part = model;
+  part.mean = model.mean.segment(from, dims);
+  part.observation = model.observation.middleRows(from, dims);
+  part.observation_noise = model.observation_noise.cols() == 1
+                               ? Eigen::MatrixXd(model.observation_noise.middleRows(from, dims))
+                               : Eigen::MatrixXd(model.observation_noise.block(from, from, dims, dims));
+  return part;
+}
+
+Lds TrainLds::fit(const Sequences& data, Context& context, Eigen::Index apart) const {
+  const LdsFloors floors{Eigen::VectorXd::Constant(latent_dimension, state_floor), variance_floors(data.frames, floor)};
+  Lds model = start_lds(data, *this, floors, apart);
+  LdsExpectations given(model.states());
   model.trace = run_em(
       {iterations, tolerance}, data.frames.rows(), fmt::format("LDS of {} state dimensions", model.states()), context,
-      [&] { return expect(model, data, given); }, [&] { maximise(model, data.frames, given, floors, covariance); });
+      [&] { return expect(model, data, given); },
+      [&] { maximise(model, data.frames, given, floors, covariance, apart); });
   return model;
 }
 

@@ -22,6 +22,17 @@ LdsPosterior kalman_filter(const Lds& model, const Eigen::MatrixXd& frames, cons
 /// States given all frames (Rauch, Tung and Striebel 1965).
 LdsPosterior kalman_smoother(const Lds& model, const Eigen::MatrixXd& frames,
                              const std::vector<std::int64_t>& lost = {});
+/// A system that switches: the one that gives each frame, and leads from the state before to its own; that of the first
+/// frame starts it. All have states and frames of the same dimensions.
+using LdsRegimes = std::vector<const Lds*>;
+LdsPosterior kalman_filter(const LdsRegimes& regimes, const Eigen::MatrixXd& frames,
+                           const std::vector<std::int64_t>& lost = {});
+LdsPosterior kalman_smoother(const LdsRegimes& regimes, const Eigen::MatrixXd& frames,
+                             const std::vector<std::int64_t>& lost = {});
+
+/// The system of `dims` observed dimensions alone, from number `from` on.
+Lds observed_part(const Lds& model, Eigen::Index from, Eigen::Index dims);
+
 /// The frames that states (T × d) give without noise, T × D.
 Eigen::MatrixXd observations(const Lds& model, const Eigen::MatrixXd& states);
 
@@ -38,8 +49,9 @@ struct TrainLds {
   Lds operator()(const Collected<Track>& tracks, Context& context) const;
   /// By expectation maximisation. It starts from PPCA of the frames, each stacked with those before it if there are
   /// more state than observed dimensions; `mean` is that of the frames and stays. Of one-frame sequences alone no
-  /// dynamics are learnt: A and ν are 0 and Σ is I.
-  Lds fit(const Sequences& data, Context& context) const;
+  /// dynamics are learnt: A and ν are 0 and Σ is I. The noise of the first `apart` dimensions is independent of that of
+  /// the others.
+  Lds fit(const Sequences& data, Context& context, Eigen::Index apart = 0) const;
 };
 void describe(Description<TrainLds>& d);
 

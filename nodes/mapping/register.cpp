@@ -2,6 +2,8 @@
 
 #include "nodes/mapping/joint_gmm.h"
 #include "nodes/mapping/phone_gaussians.h"
+#include "nodes/mapping/shared_lds.h"
+#include "nodes/mapping/shared_lds_synthesise.h"
 #include "nodes/mapping/ssgpdm.h"
 #include "nodes/mapping/ssgpdm_synthesise.h"
 #include "nodes/mapping/windowed_cca.h"
@@ -12,10 +14,12 @@ void register_mapping(Registry& registry) {
   registry.add<AssembleSsgpdm>();
   registry.add<SynthesiseJointGmm>();
   registry.add<SynthesisePhoneGaussians>();
+  registry.add<SynthesiseSharedLds>();
   registry.add<SynthesiseSsgpdm>();
   registry.add<SynthesiseWindowedCca>();
   registry.add<TrainJointGmm>();
   registry.add<TrainPhoneGaussians>();
+  registry.add<TrainSharedLds>();
   registry.add<TrainWindowedCca>();
 }
 

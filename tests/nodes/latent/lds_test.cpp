@@ -49,12 +49,15 @@ Sequences sample(const Lds& model, const std::vector<std::int64_t>& lengths, std
 
 /// The joint Gaussian of all states and all frames of a sequence, built block by block.
 struct Joint {
-  Joint(const Lds& m, Eigen::Index frames) : d(m.states()), dims(m.dimension()) {
+  Joint(const Lds& m, Eigen::Index frames) : Joint(LdsRegimes(static_cast<std::size_t>(frames), &m)) {}
+  explicit Joint(const LdsRegimes& regimes) : d(regimes[0]->states()), dims(regimes[0]->dimension()) {
+    const auto frames = static_cast<Eigen::Index>(regimes.size());
     mean.resize(frames * d);
     covariance.resize(frames * d, frames * d);
-    mean.head(d) = m.first_mean;
-    covariance.topLeftCorner(d, d) = m.first_covariance;
+    mean.head(d) = regimes[0]->first_mean;
+    covariance.topLeftCorner(d, d) = regimes[0]->first_covariance;
     for (Eigen::Index t = 1; t < frames; ++t) {
+      const Lds& m = *regimes[static_cast<std::size_t>(t)];
       mean.segment(t * d, d) = m.prediction * mean.segment((t - 1) * d, d) + m.offset;
       const Eigen::MatrixXd across = m.prediction * covariance.block((t - 1) * d, 0, d, t * d);
       covariance.block(t * d, 0, d, t * d) = across;
@@ -65,6 +68,7 @@ struct Joint {
     noise.setZero(frames * dims, frames * dims);
     observed_mean.resize(frames * dims);
     for (Eigen::Index t = 0; t < frames; ++t) {
+      const Lds& m = *regimes[static_cast<std::size_t>(t)];
       observe.block(t * dims, t * d, dims, d) = m.observation;
       noise.block(t * dims, t * dims, dims, dims) = m.observation_noise.cols() == 1
                                                         ? Eigen::MatrixXd(m.observation_noise.col(0).asDiagonal())
@@ -97,10 +101,10 @@ struct Joint {
   double log_likelihood = 0;
 };
 
-void expect_dense(const Lds& model, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
-  const Eigen::Index length = frames.rows(), d = model.states();
-  const LdsPosterior smoothed = kalman_smoother(model, frames, lost), filtered = kalman_filter(model, frames, lost);
-  Joint joint(model, length);
+void expect_dense(const LdsRegimes& regimes, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
+  const Eigen::Index length = frames.rows(), d = regimes[0]->states();
+  const LdsPosterior smoothed = kalman_smoother(regimes, frames, lost), filtered = kalman_filter(regimes, frames, lost);
+  Joint joint(regimes);
   joint.condition(frames, lost);
   EXPECT_NEAR(smoothed.log_likelihood, joint.log_likelihood, 1e-9);
   EXPECT_EQ(filtered.log_likelihood, smoothed.log_likelihood);
@@ -112,7 +116,7 @@ void expect_dense(const Lds& model, const Eigen::MatrixXd& frames, const std::ve
       EXPECT_LT((smoothed.lagged[at - 1] - joint.covariance.block(t * d, (t - 1) * d, d, d)).norm(), 1e-9);
     }
 
-    Joint so_far(model, t + 1);
+    Joint so_far(LdsRegimes(regimes.begin(), regimes.begin() + t + 1));
     std::vector<std::int64_t> lost_so_far;
     for (const auto l : lost)
       if (l <= t) lost_so_far.push_back(l);
@@ -120,6 +124,11 @@ void expect_dense(const Lds& model, const Eigen::MatrixXd& frames, const std::ve
     EXPECT_LT((filtered.means.row(t).transpose() - so_far.mean.tail(d)).norm(), 1e-9);
     EXPECT_LT((filtered.covariances[at] - so_far.covariance.bottomRightCorner(d, d)).norm(), 1e-9);
   }
+}
+
+void expect_dense(const Lds& model, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
+  expect_dense(LdsRegimes(static_cast<std::size_t>(frames.rows()), &model), frames, lost);
+  EXPECT_EQ(kalman_smoother(model, frames, lost).log_likelihood, kalman_filter(model, frames, lost).log_likelihood);
 }
 
 TEST(Lds, FilterSmootherAndLikelihoodAreThoseOfTheJointGaussian) {
@@ -130,6 +139,33 @@ TEST(Lds, FilterSmootherAndLikelihoodAreThoseOfTheJointGaussian) {
   const Eigen::MatrixXd frames = sample(model, {8}, 3).frames;
   model.observation_noise = model.observation_noise.diagonal().eval();
   expect_dense(model, frames, {2});
+}
+
+TEST(Lds, AlsoWhereTheSystemSwitches) {
+  const Lds one = truth();
+  Lds other = one;
+  other.prediction *= -0.5;
+  other.offset *= 3;
+  other.prediction_noise *= 2;
+  other.first_mean *= -1;
+  other.observation = gaussian(4, 2, 11);
+  other.observation_noise = one.observation_noise.diagonal();
+  other.mean = gaussian(1, 4, 12);
+  const Eigen::MatrixXd frames = sample(one, {6}, 4).frames;
+  expect_dense({&one, &one, &other, &one, &other, &other}, frames, {});
+  expect_dense({&other, &one, &other, &other, &one, &one}, frames, {1, 4});
+}
+
+TEST(Lds, OfAPartOfTheObservedDimensionsSeesTheSameStates) {
+  Lds model = truth();
+  model.observation_noise.topRightCorner(3, 1).setZero();
+  model.observation_noise.bottomLeftCorner(1, 3).setZero();
+  const Eigen::MatrixXd frames = sample(model, {8}, 4).frames;
+  expect_dense(observed_part(model, 0, 3), frames.leftCols(3), {});
+  model.observation_noise = model.observation_noise.diagonal().eval();
+  expect_dense(observed_part(model, 1, 3), frames.rightCols(3), {});
+  EXPECT_TRUE(observations(observed_part(model, 1, 3), gaussian(5, 2, 1))
+                  .isApprox(observations(model, gaussian(5, 2, 1)).rightCols(3)));
 }
 
 TEST(Lds, CovariancesStayPositiveWithHardlyAnyNoise) {

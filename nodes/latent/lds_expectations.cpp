@@ -1,0 +1,105 @@
+#include "nodes/latent/lds_expectations.h"
+
+#include <numeric>
+#include <stdexcept>
+
+namespace talkgraph {
+
+namespace {
+
+Eigen::LLT<Eigen::MatrixXd> root_of(const Eigen::MatrixXd& squares) {
+  Eigen::LLT<Eigen::MatrixXd> root(squares);
+  if (root.info() != Eigen::Success)
+    throw std::runtime_error(
+        "linear dynamical system: its states do not span their space: raise the floors of training");
+  return root;
+}
+
+void maximise_dynamics(Lds& model, const LdsExpectations& e, const LdsFloors& floors) {
+  const Eigen::Index d = model.states();
+  const double steps = e.from(d, d);
+  if (steps == 0) return;
+  const Eigen::MatrixXd map = root_of(e.from).solve(e.across.transpose()).transpose();
+  model.prediction = map.leftCols(d);
+  model.offset = map.col(d);
+  const Eigen::MatrixXd shared = map * e.across.transpose();
+  const Eigen::MatrixXd left = e.to - shared - shared.transpose() + map * e.from * map.transpose();
+  model.prediction_noise = floored(0.5 / steps * (left + left.transpose()), floors.states);
+}
+
+void maximise_first(Lds& model, const LdsExpectations& e, const LdsFloors& floors) {
+  if (e.first.rows() == 0) return;
+  model.first_mean = e.first.colwise().mean().transpose();
+  const Eigen::MatrixXd spread = e.first.rowwise() - model.first_mean.transpose();
+  model.first_covariance =
+      floored((spread.transpose() * spread + e.first_covariance) / static_cast<double>(e.first.rows()), floors.states);
+}
+
+/// Without the covariances of the first `apart` dimensions with the others.
+Eigen::MatrixXd separated(Eigen::MatrixXd covariance, Eigen::Index apart) {
+  if (covariance.cols() == 1) return covariance;
+  const Eigen::Index others = covariance.rows() - apart;
+  covariance.topRightCorner(apart, others).setZero();
+  covariance.bottomLeftCorner(others, apart).setZero();
+  return covariance;
+}
+
+}  // namespace
+
+LdsExpectations::LdsExpectations(Eigen::Index d)
+    : from(Eigen::MatrixXd::Zero(d + 1, d + 1)),
+      to(Eigen::MatrixXd::Zero(d, d)),
+      across(Eigen::MatrixXd::Zero(d, d + 1)),
+      first(Eigen::MatrixXd::Zero(0, d)),
+      first_covariance(Eigen::MatrixXd::Zero(d, d)),
+      covariance(Eigen::MatrixXd::Zero(d, d)),
+      means(0, d) {}
+
+void LdsExpectations::add(const LdsPosterior& p, const std::vector<Eigen::Index>& times) {
+  if (times.empty()) return;
+  const Eigen::Index d = p.means.cols(), begins = times.front() == 0 ? 1 : 0;
+  const std::vector<Eigen::Index> after(times.begin() + begins, times.end());
+  const auto steps = static_cast<Eigen::Index>(after.size());
+  Eigen::MatrixXd before(steps, d + 1), reached(steps, d);
+  for (Eigen::Index i = 0; i < steps; ++i) {
+    const Eigen::Index t = after[static_cast<std::size_t>(i)];
+    before.row(i) << p.means.row(t - 1), 1;
+    reached.row(i) = p.means.row(t);
+    from.topLeftCorner(d, d) += p.covariances[static_cast<std::size_t>(t - 1)];
+    to += p.covariances[static_cast<std::size_t>(t)];
+    across.leftCols(d) += p.lagged[static_cast<std::size_t>(t - 1)];
+  }
+  from += before.transpose() * before;
+  to += reached.transpose() * reached;
+  across += reached.transpose() * before;
+  first.conservativeResize(first.rows() + begins, Eigen::NoChange);
+  first.bottomRows(begins) = p.means.topRows(begins);
+  if (begins) first_covariance += p.covariances.front();
+  means.conservativeResize(means.rows() + std::ssize(times), Eigen::NoChange);
+  means.bottomRows(std::ssize(times)) = p.means(times, Eigen::all);
+  for (const Eigen::Index t : times) covariance += p.covariances[static_cast<std::size_t>(t)];
+}
+
+void LdsExpectations::add(const LdsPosterior& p) {
+  std::vector<Eigen::Index> times(p.covariances.size());
+  std::iota(times.begin(), times.end(), 0);
+  add(p, times);
+}
+
+void maximise(Lds& model, const Eigen::MatrixXd& frames, const LdsExpectations& e, const LdsFloors& floors,
+              CovarianceKind kind, Eigen::Index apart) {
+  maximise_dynamics(model, e, floors);
+  maximise_first(model, e, floors);
+  const Eigen::MatrixXd centred = frames.rowwise() - model.mean;
+  const Eigen::MatrixXd squares = e.means.transpose() * e.means + e.covariance;
+  model.observation = root_of(squares).solve(e.means.transpose() * centred).transpose();
+  const Eigen::MatrixXd errors = centred - e.means * model.observation.transpose();
+  Eigen::MatrixXd noise = scatter(errors, Eigen::VectorXd::Ones(frames.rows()), kind);
+  const Eigen::MatrixXd hidden =
+      model.observation * (e.covariance / static_cast<double>(frames.rows())) * model.observation.transpose();
+  noise += kind == CovarianceKind::full ? hidden : Eigen::MatrixXd(hidden.diagonal());
+  model.observation_noise = floored(separated(std::move(noise), apart), floors.observations);
+  model.observation_noise = separated(std::move(model.observation_noise), apart);
+}
+
+}  // namespace talkgraph
