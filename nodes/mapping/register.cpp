@@ -1,5 +1,8 @@
 #include "nodes/mapping/register.h"
 
+#include "nodes/mapping/dpds.h"
+#include "nodes/mapping/dpds_decode.h"
+#include "nodes/mapping/dpds_synthesise.h"
 #include "nodes/mapping/joint_gmm.h"
 #include "nodes/mapping/phone_gaussians.h"
 #include "nodes/mapping/shared_lds.h"
@@ -12,11 +15,14 @@ namespace talkgraph {
 
 void register_mapping(Registry& registry) {
   registry.add<AssembleSsgpdm>();
+  registry.add<DecodeDpds>();
+  registry.add<SynthesiseDpds>();
   registry.add<SynthesiseJointGmm>();
   registry.add<SynthesisePhoneGaussians>();
   registry.add<SynthesiseSharedLds>();
   registry.add<SynthesiseSsgpdm>();
   registry.add<SynthesiseWindowedCca>();
+  registry.add<TrainDpds>();
   registry.add<TrainJointGmm>();
   registry.add<TrainPhoneGaussians>();
   registry.add<TrainSharedLds>();

@@ -13,7 +13,7 @@ namespace talkgraph {
 /// Streams are paired by key. Throws std::runtime_error if none pair, if lengths differ by more than two frames, on
 /// different dimensions, on values that are not finite, and if no visual frame is measured.
 struct TrainSharedLds {
-  int latent_dimension = 10;
+  int latent_dimension = 30;
   CovarianceKind covariance = CovarianceKind::full;
   int iterations = 100;
   double tolerance = 1e-5;
