@@ -7,6 +7,8 @@
 #include "nodes/mapping/phone_gaussians.h"
 #include "nodes/mapping/shared_lds.h"
 #include "nodes/mapping/shared_lds_synthesise.h"
+#include "nodes/mapping/slds.h"
+#include "nodes/mapping/slds_synthesise.h"
 #include "nodes/mapping/ssgpdm.h"
 #include "nodes/mapping/ssgpdm_synthesise.h"
 #include "nodes/mapping/windowed_cca.h"
@@ -20,12 +22,14 @@ void register_mapping(Registry& registry) {
   registry.add<SynthesiseJointGmm>();
   registry.add<SynthesisePhoneGaussians>();
   registry.add<SynthesiseSharedLds>();
+  registry.add<SynthesiseSlds>();
   registry.add<SynthesiseSsgpdm>();
   registry.add<SynthesiseWindowedCca>();
   registry.add<TrainDpds>();
   registry.add<TrainJointGmm>();
   registry.add<TrainPhoneGaussians>();
   registry.add<TrainSharedLds>();
+  registry.add<TrainSlds>();
   registry.add<TrainWindowedCca>();
 }
 
