@@ -143,7 +143,7 @@ Eigen::MatrixXd stacked(const Sequences& data, Eigen::Index lags) {
   return rows;
 }
 
-Lds start_lds(const Sequences& data, const TrainLds& options, const LdsFloors& floors, Eigen::Index apart) {
+Lds start_lds(const Sequences& data, const TrainLds& options, const LdsConstraints& constraints) {
   const Eigen::Index d = options.latent_dimension, dims = data.frames.cols();
   const Eigen::MatrixXd rows = stacked(data, (d + dims - 1) / dims);
   const Ppca ppca = fit_ppca(rows, d);
@@ -161,7 +161,7 @@ Lds start_lds(const Sequences& data, const TrainLds& options, const LdsFloors& f
   model.prediction.setZero(d, d);
   model.offset.setZero(d);
   model.prediction_noise.setIdentity(d, d);
-  maximise(model, data.frames, e, floors, options.covariance, apart);
+  maximise(model, data.frames, e, constraints);
   model.first_covariance.setIdentity(d, d);
   return model;
 }
@@ -228,14 +228,14 @@ Lds observed_part(const Lds& model, Eigen::Index from, Eigen::Index dims) {
   return part;
 }
 
-Lds TrainLds::fit(const Sequences& data, Context& context, Eigen::Index apart) const {
-  const LdsFloors floors{Eigen::VectorXd::Constant(latent_dimension, state_floor), variance_floors(data.frames, floor)};
-  Lds model = start_lds(data, *this, floors, apart);
+Lds TrainLds::fit(const Sequences& data, Context& context, const LdsLimits& limits) const {
+  const LdsConstraints constraints{Eigen::VectorXd::Constant(latent_dimension, state_floor),
+                                   variance_floors(data.frames, floor), covariance, limits};
+  Lds model = start_lds(data, *this, constraints);
   LdsExpectations given(model.states());
   model.trace = run_em(
       {iterations, tolerance}, data.frames.rows(), fmt::format("LDS of {} state dimensions", model.states()), context,
-      [&] { return expect(model, data, given); },
-      [&] { maximise(model, data.frames, given, floors, covariance, apart); });
+      [&] { return expect(model, data, given); }, [&] { maximise(model, data.frames, given, constraints); });
   return model;
 }
 

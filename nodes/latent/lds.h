@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "graph/context.h"
 #include "graph/description.h"
 #include "nodes/latent/normal.h"
@@ -36,6 +38,12 @@ Lds observed_part(const Lds& model, Eigen::Index from, Eigen::Index dims);
 /// The frames that states (T × d) give without noise, T × D.
 Eigen::MatrixXd observations(const Lds& model, const Eigen::MatrixXd& states);
 
+/// What a system to be learnt keeps to.
+struct LdsLimits {
+  Eigen::Index apart = 0;  ///< the noise of that many first dimensions is independent of that of the others
+  double radius = std::numeric_limits<double>::infinity();  ///< most |eigenvalue| of A: below 1 states come to rest
+};
+
 /// A linear dynamical system of tracks, every run of measured frames a sequence. Throws std::runtime_error, naming the
 /// track, if none has a measured frame, on different dimensions and on values that are not finite.
 struct TrainLds {
@@ -49,9 +57,8 @@ struct TrainLds {
   Lds operator()(const Collected<Track>& tracks, Context& context) const;
   /// By expectation maximisation. It starts from PPCA of the frames, each stacked with those before it if there are
   /// more state than observed dimensions; `mean` is that of the frames and stays. Of one-frame sequences alone no
-  /// dynamics are learnt: A and ν are 0 and Σ is I. The noise of the first `apart` dimensions is independent of that of
-  /// the others.
-  Lds fit(const Sequences& data, Context& context, Eigen::Index apart = 0) const;
+  /// dynamics are learnt: A and ν are 0 and Σ is I.
+  Lds fit(const Sequences& data, Context& context, const LdsLimits& limits = {}) const;
 };
 void describe(Description<TrainLds>& d);
 

@@ -1,5 +1,6 @@
 #include "nodes/latent/lds_expectations.h"
 
+#include <Eigen/Eigenvalues>
 #include <numeric>
 #include <stdexcept>
 
@@ -15,24 +16,44 @@ Eigen::LLT<Eigen::MatrixXd> root_of(const Eigen::MatrixXd& squares) {
   return root;
 }
 
-void maximise_dynamics(Lds& model, const LdsExpectations& e, const LdsFloors& floors) {
+double radius(const Eigen::MatrixXd& prediction) { return prediction.eigenvalues().cwiseAbs().maxCoeff(); }
+
+/// The share of the way from one A to another that keeps to a limit, found to a thousandth.
+double share_within(double limit, const Eigen::MatrixXd& from, const Eigen::MatrixXd& to) {
+  if (!std::isfinite(limit) || radius(to) <= limit) return 1;
+  double within = 0, beyond = 1;
+  while (beyond - within > 1e-3) {
+    const double middle = 0.5 * (within + beyond);
+    (radius(from + middle * (to - from)) <= limit ? within : beyond) = middle;
+  }
+  return within;
+}
+
+void maximise_dynamics(Lds& model, const LdsExpectations& e, const LdsConstraints& constraints) {
   const Eigen::Index d = model.states();
   const double steps = e.from(d, d);
   if (steps == 0) return;
-  const Eigen::MatrixXd map = root_of(e.from).solve(e.across.transpose()).transpose();
+  Eigen::MatrixXd map = root_of(e.from).solve(e.across.transpose()).transpose();
+  const double share = share_within(constraints.limits.radius, model.prediction, map.leftCols(d));
+  if (share < 1) {
+    map *= share;
+    map.leftCols(d) += (1 - share) * model.prediction;
+    map.col(d) += (1 - share) * model.offset;
+  }
   model.prediction = map.leftCols(d);
   model.offset = map.col(d);
   const Eigen::MatrixXd shared = map * e.across.transpose();
   const Eigen::MatrixXd left = e.to - shared - shared.transpose() + map * e.from * map.transpose();
-  model.prediction_noise = floored(0.5 / steps * (left + left.transpose()), floors.states);
+  model.prediction_noise = floored(0.5 / steps * (left + left.transpose()), constraints.state_floors);
 }
 
-void maximise_first(Lds& model, const LdsExpectations& e, const LdsFloors& floors) {
-  if (e.first.rows() == 0) return;
+void maximise_first(Lds& model, const LdsExpectations& e, const LdsConstraints& constraints) {
+  const auto sequences = static_cast<double>(e.first.rows());
+  if (sequences == 0) return;
   model.first_mean = e.first.colwise().mean().transpose();
   const Eigen::MatrixXd spread = e.first.rowwise() - model.first_mean.transpose();
   model.first_covariance =
-      floored((spread.transpose() * spread + e.first_covariance) / static_cast<double>(e.first.rows()), floors.states);
+      floored((spread.transpose() * spread + e.first_covariance) / sequences, constraints.state_floors);
 }
 
 /// Without the covariances of the first `apart` dimensions with the others.
@@ -86,20 +107,19 @@ void LdsExpectations::add(const LdsPosterior& p) {
   add(p, times);
 }
 
-void maximise(Lds& model, const Eigen::MatrixXd& frames, const LdsExpectations& e, const LdsFloors& floors,
-              CovarianceKind kind, Eigen::Index apart) {
-  maximise_dynamics(model, e, floors);
-  maximise_first(model, e, floors);
+void maximise(Lds& model, const Eigen::MatrixXd& frames, const LdsExpectations& e, const LdsConstraints& constraints) {
+  maximise_dynamics(model, e, constraints);
+  maximise_first(model, e, constraints);
   const Eigen::MatrixXd centred = frames.rowwise() - model.mean;
   const Eigen::MatrixXd squares = e.means.transpose() * e.means + e.covariance;
   model.observation = root_of(squares).solve(e.means.transpose() * centred).transpose();
   const Eigen::MatrixXd errors = centred - e.means * model.observation.transpose();
-  Eigen::MatrixXd noise = scatter(errors, Eigen::VectorXd::Ones(frames.rows()), kind);
+  Eigen::MatrixXd noise = scatter(errors, Eigen::VectorXd::Ones(frames.rows()), constraints.covariance);
   const Eigen::MatrixXd hidden =
       model.observation * (e.covariance / static_cast<double>(frames.rows())) * model.observation.transpose();
-  noise += kind == CovarianceKind::full ? hidden : Eigen::MatrixXd(hidden.diagonal());
-  model.observation_noise = floored(separated(std::move(noise), apart), floors.observations);
-  model.observation_noise = separated(std::move(model.observation_noise), apart);
+  noise += constraints.covariance == CovarianceKind::full ? hidden : Eigen::MatrixXd(hidden.diagonal());
+  const Eigen::Index apart = constraints.limits.apart;
+  model.observation_noise = separated(floored(separated(noise, apart), constraints.noise_floors), apart);
 }
 
 }  // namespace talkgraph

@@ -19,15 +19,15 @@ struct LdsExpectations {
   Eigen::MatrixXd means;  ///< N × d
 };
 
-/// Least variances, a direction each.
-struct LdsFloors {
-  Eigen::VectorXd states, observations;
+struct LdsConstraints {
+  Eigen::VectorXd state_floors, noise_floors;  ///< least variances, a direction each
+  CovarianceKind covariance = CovarianceKind::full;
+  LdsLimits limits;
 };
 
 /// The likeliest system given the expectations, and the frames in their order (N × D). What no step leads to keeps its
-/// dynamics, what begins no sequence its first state. The noise of the first `apart` dimensions is independent of that
-/// of the others.
-void maximise(Lds& model, const Eigen::MatrixXd& frames, const LdsExpectations& e, const LdsFloors& floors,
-              CovarianceKind kind, Eigen::Index apart = 0);
+/// dynamics, what begins no sequence its first state. Where the likeliest A would break the limit, which `model` keeps
+/// to, it is approached as far as that allows; so the likelihood never falls.
+void maximise(Lds& model, const Eigen::MatrixXd& frames, const LdsExpectations& e, const LdsConstraints& constraints);
 
 }  // namespace talkgraph

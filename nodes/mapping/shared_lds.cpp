@@ -1,5 +1,6 @@
 #include "nodes/mapping/shared_lds.h"
 
+#include "nodes/latent/em.h"
 #include "nodes/latent/lds.h"
 #include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
@@ -16,9 +17,11 @@ SharedLds TrainSharedLds::operator()(const Collected<Track>& audio, const Collec
   TrainLds train;
   train.latent_dimension = latent_dimension;
   train.covariance = covariance;
+  train.floor = floor;
   train.iterations = iterations;
   train.tolerance = tolerance;
-  return {part_of(both, 0, heard), part_of(both, heard, both.mean.size() - heard), train.fit(data, context, heard)};
+  return {part_of(both, 0, heard), part_of(both, heard, both.mean.size() - heard),
+          train.fit(data, context, {.apart = heard})};
 }
 
 void describe(Description<TrainSharedLds>& d) {
@@ -30,10 +33,7 @@ void describe(Description<TrainSharedLds>& d) {
       .output("model", "the system");
   d.param("latent_dimension", &TrainSharedLds::latent_dimension).at_least(1).doc("of the state");
   d.param("covariance", &TrainSharedLds::covariance).doc("of the noise of either stream");
-  d.param("iterations", &TrainSharedLds::iterations).at_least(0).doc("limit of expectation maximisation");
-  d.param("tolerance", &TrainSharedLds::tolerance)
-      .at_least(0)
-      .doc("it ends when the log-likelihood gains no more than this in an iteration, a frame");
+  describe_em(d, "either stream's noise");
 }
 
 }  // namespace talkgraph

@@ -15,6 +15,7 @@ namespace talkgraph {
 struct TrainSharedLds {
   int latent_dimension = 30;
   CovarianceKind covariance = CovarianceKind::full;
+  double floor = 1e-3;
   int iterations = 100;
   double tolerance = 1e-5;
 

@@ -54,9 +54,9 @@ class SwitchingEm {
     return log_likelihood;
   }
 
-  void maximise(const LdsFloors& floors, CovarianceKind kind, Eigen::Index apart) {
+  void maximise(const LdsConstraints& constraints) {
     for (auto& [label, phone] : phones_)
-      talkgraph::maximise(*phone.system, phone.frames, phone.expectations, floors, kind, apart);
+      talkgraph::maximise(*phone.system, phone.frames, phone.expectations, constraints);
   }
 
  private:
@@ -86,13 +86,15 @@ Slds TrainSlds::operator()(const Collected<Track>& audio, const Collected<Track>
   train.latent_dimension = latent_dimension;
   train.covariance = covariance;
   train.floor = floor;
-  model.shared = train.fit(data, context, heard);
-  const LdsFloors floors{Eigen::VectorXd::Constant(latent_dimension, train.state_floor),
-                         variance_floors(data.frames, floor)};
+  LdsLimits limits{.apart = heard};
+  if (bound > 0) limits.radius = bound;
+  model.shared = train.fit(data, context, limits);
+  const LdsConstraints constraints{Eigen::VectorXd::Constant(latent_dimension, train.state_floor),
+                                   variance_floors(data.frames, floor), covariance, limits};
   SwitchingEm em(model, data, training.labels, min_frames);
   model.trace = run_em(
       {iterations, tolerance}, data.frames.rows(), fmt::format("SLDS of {} phones", model.phones.size()), context,
-      [&] { return em.expect(); }, [&] { em.maximise(floors, covariance, heard); });
+      [&] { return em.expect(); }, [&] { em.maximise(constraints); });
   return model;
 }
 
@@ -111,14 +113,10 @@ void describe(Description<TrainSlds>& d) {
   d.param("min_frames", &TrainSlds::min_frames)
       .at_least(1)
       .doc("phones of fewer training frames have the system of all phones together");
-  d.param("floor", &TrainSlds::floor)
-      .positive()
-      .doc(
-          "least variance of the observations' noise in any direction, as a share of the frames' variance a dimension");
-  d.param("iterations", &TrainSlds::iterations).at_least(0).doc("limit of expectation maximisation");
-  d.param("tolerance", &TrainSlds::tolerance)
-      .at_least(0)
-      .doc("it ends when the log-likelihood gains no more than this in an iteration, a frame");
+  d.param("bound", &TrainSlds::bound)
+      .within(0, 1)
+      .doc("most |eigenvalue| of A, below 1 so that a long phone comes to rest; 0: none, as in the source");
+  describe_em(d, "either stream's noise");
 }
 
 }  // namespace talkgraph

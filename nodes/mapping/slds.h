@@ -21,6 +21,7 @@ struct TrainSlds {
   int latent_dimension = 5;
   CovarianceKind covariance = CovarianceKind::full;
   int min_frames = 50;
+  double bound = 0.98;
   double floor = 1e-3;
   int iterations = 20;
   double tolerance = 1e-4;

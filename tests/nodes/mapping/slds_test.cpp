@@ -192,6 +192,28 @@ TEST(Slds, LearnsNothingFromLostFramesAndBridgesLostSound) {
   EXPECT_LT(SynthesiseSlds{}(model, sound, corpus.labels[0]).values.cwiseAbs().maxCoeff(), 100);
 }
 
+TEST(Slds, ALongPhoneComesToRest) {
+  Context context;
+  Corpus corpus = sample(truth(), 2, 60, 5);
+  Track rise;
+  rise.values = Eigen::MatrixXd::NullaryExpr(
+      60, seen, [](Eigen::Index t, Eigen::Index d) { return std::pow(1.5, t % 6) + static_cast<double>(d); });
+  FrameLabels labels;
+  for (int t = 0; t < 60; ++t) labels.labels.push_back(t % 6 == 0 ? "b" : "a");
+  TrainSlds train = node(false);
+  train.min_frames = 10;
+  train.tolerance = 0;
+  const Slds model = train(corpus.audio, {{"0", rise}}, {{"0", labels}}, context);
+  EXPECT_NEAR(model.phones.at("a").prediction.eigenvalues().cwiseAbs().maxCoeff(), train.bound, 0.01);
+  EXPECT_LT(testing::largest_fall(model.trace), 1e-10);
+  EXPECT_LT(testing::largest_fall(model.shared.trace), 1e-10);
+  Track sound;
+  sound.values.setZero(3000, heard);
+  const Track face = SynthesiseSlds{}(model, sound, {std::vector<std::string>(3000, "a"), 25});
+  EXPECT_TRUE(face.values.allFinite());
+  EXPECT_TRUE(face.values.row(2999).isApprox(face.values.row(2900), 1e-3));
+}
+
 TEST(Slds, AnswersDegenerateData) {
   Context context;
   TrainSlds train;
