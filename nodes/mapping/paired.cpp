@@ -25,8 +25,8 @@ Eigen::Index common_frames(const std::string& utterance, Eigen::Index a, const c
   return std::min(a, b);
 }
 
-SideBySide side_by_side(const Collected<Track>& audio, const Collected<Track>& visual) {
-  SideBySide both;
+JoinedStreams side_by_side(const Collected<Track>& audio, const Collected<Track>& visual) {
+  JoinedStreams both;
   for (std::size_t i = 0; i < audio.size(); ++i) {
     const std::string& key = audio.key(i);
     const Track* seen = visual.find(key);

@@ -12,11 +12,11 @@ Eigen::Index common_frames(const std::string& utterance, Eigen::Index a, const c
 
 /// Audio and visual frames side by side, lost where the face is, of the utterances that both streams have. Throws
 /// std::runtime_error as common_frames(), and if there is none.
-struct SideBySide {
+struct JoinedStreams {
   Collected<Track> tracks;  ///< T × (D_Y + D_Z)
   Eigen::Index audio = 0;   ///< D_Y
 };
-SideBySide side_by_side(const Collected<Track>& audio, const Collected<Track>& visual);
+JoinedStreams side_by_side(const Collected<Track>& audio, const Collected<Track>& visual);
 
 /// Tracks with a label a frame, likewise.
 struct Labelled {

@@ -9,7 +9,7 @@ namespace talkgraph {
 
 SharedLds TrainSharedLds::operator()(const Collected<Track>& audio, const Collected<Track>& visual,
                                      Context& context) const {
-  const SideBySide streams = side_by_side(audio, visual);
+  const JoinedStreams streams = side_by_side(audio, visual);
   Sequences data = measured_runs(streams.tracks);
   const Eigen::Index heard = streams.audio;
   const Scaling both = scaling_of(data.frames);

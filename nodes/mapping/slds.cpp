@@ -75,7 +75,7 @@ const Lds& system_of(const Slds& model, const std::string& phone) {
 
 Slds TrainSlds::operator()(const Collected<Track>& audio, const Collected<Track>& visual,
                            const Collected<FrameLabels>& labels, Context& context) const {
-  const SideBySide streams = sound ? side_by_side(audio, visual) : SideBySide{visual, 0};
+  const JoinedStreams streams = sound ? side_by_side(audio, visual) : JoinedStreams{visual, 0};
   const Labelled training = labelled(streams.tracks, labels);
   Sequences data = measured_runs(training.tracks);
   const Eigen::Index heard = streams.audio;
