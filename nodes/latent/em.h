@@ -16,7 +16,8 @@ namespace talkgraph {
 /// When expectation maximisation ends.
 struct EmLimits {
   int iterations;
-  double tolerance;  ///< of what the log-likelihood gains in an iteration, a frame
+  double tolerance;                          ///< of what the log-likelihood gains in an iteration, a frame
+  const char* objective = "log-likelihood";  ///< what rises, for the log
 };
 
 /// Expectation maximisation. `expect` gives the log-likelihood under the model as it is, and keeps what `maximise`
@@ -32,14 +33,13 @@ std::vector<double> run_em(const EmLimits& limits, Eigen::Index frames, const st
     maximise();
     trace.push_back(expect());
     if (!std::isfinite(trace.back()))
-      throw std::runtime_error(
-          fmt::format("{}: the log-likelihood is {} after {} iterations: are values of the features huge?", subject,
-                      trace.back(), i + 1));
+      throw std::runtime_error(fmt::format("{}: the {} is {} after {} iterations: are values of the features huge?",
+                                           subject, limits.objective, trace.back(), i + 1));
     settled = trace.back() - trace[trace.size() - 2] <= limits.tolerance * static_cast<double>(frames);
     context.progress(static_cast<double>(i + 1) / limits.iterations);
   }
-  context.log(fmt::format("{}, {} frames: log-likelihood {:.8g}, {:.5g} a frame, after {} iterations{}", subject,
-                          frames, trace.back(), trace.back() / static_cast<double>(frames), trace.size() - 1,
+  context.log(fmt::format("{}, {} frames: {} {:.8g}, {:.5g} a frame, after {} iterations{}", subject, frames,
+                          limits.objective, trace.back(), trace.back() / static_cast<double>(frames), trace.size() - 1,
                           settled ? "" : ", not converged"));
   return trace;
 }

@@ -113,44 +113,12 @@ Hmm start_hmm(const Sequences& data, const TrainHmm& options, const Eigen::Vecto
   return model;
 }
 
-/// What the expectation step gathers over all sequences.
-struct Expectations {
-  Eigen::MatrixXd states;  ///< N × K
-  Eigen::VectorXd starts;
-  Eigen::MatrixXd steps;
-};
-
-double expect(const Hmm& model, const Sequences& data, Expectations& e) {
-  const MarkovChain chain = chain_of(model);
-  const Eigen::MatrixXd densities = log_densities(model, data.frames);
-  e.states.resize(densities.rows(), densities.cols());
-  e.starts.setZero(model.states());
-  e.steps.setZero(model.states(), model.states());
-  double log_likelihood = 0;
-  Eigen::Index from = 0;
-  for (const Eigen::Index length : data.lengths) {
-    const ChainPosterior p = forward_backward(chain, densities.middleRows(from, length));
-    e.states.middleRows(from, length) = p.states;
-    e.starts += p.states.row(0).transpose();
-    e.steps += p.steps;
-    log_likelihood += p.log_likelihood;
-    from += length;
-  }
-  return log_likelihood;
-}
-
-void maximise(Hmm& model, const Sequences& data, const Expectations& e, const Eigen::VectorXd& floors,
+void maximise(Hmm& model, const Sequences& data, const HmmExpectations& e, const Eigen::VectorXd& floors,
               CovarianceKind kind) {
   model.start = e.starts / e.starts.sum();
-  for (Eigen::Index k = 0; k < model.states(); ++k) {
+  for (Eigen::Index k = 0; k < model.states(); ++k)
     if (const double left = e.steps.row(k).sum(); left > 1e-12) model.transitions.row(k) = e.steps.row(k) / left;
-    GaussianMixture& mixture = model.observations[static_cast<std::size_t>(k)];
-    if (mixture.components() == 1)
-      maximise(mixture, data.frames, e.states.col(k), floors, kind);
-    else
-      maximise(mixture, data.frames, e.states.col(k).asDiagonal() * responsibilities(mixture, data.frames), floors,
-               kind);
-  }
+  maximise(model.observations, data.frames, e.states, floors, kind);
 }
 
 }  // namespace
@@ -160,10 +128,10 @@ MarkovChain chain_of(const Hmm& model) {
   return {model.start.unaryExpr(log), model.transitions.unaryExpr(log)};
 }
 
-Eigen::MatrixXd log_densities(const Hmm& model, const Eigen::MatrixXd& frames) {
-  Eigen::MatrixXd logs(frames.rows(), model.states());
-  for (Eigen::Index k = 0; k < model.states(); ++k)
-    logs.col(k) = log_likelihood(model.observations[static_cast<std::size_t>(k)], frames);
+Eigen::MatrixXd log_densities(const std::vector<GaussianMixture>& states, const Eigen::MatrixXd& frames) {
+  Eigen::MatrixXd logs(frames.rows(), std::ssize(states));
+  for (Eigen::Index k = 0; k < logs.cols(); ++k)
+    logs.col(k) = log_likelihood(states[static_cast<std::size_t>(k)], frames);
   return logs;
 }
 
@@ -193,10 +161,40 @@ ChainPath viterbi(const MarkovChain& chain, const Eigen::MatrixXd& log_densities
   return {std::move(best.states), best.scores.back().maxCoeff()};
 }
 
+double expect(const Hmm& model, const Sequences& data, HmmExpectations& e) {
+  const MarkovChain chain = chain_of(model);
+  const Eigen::MatrixXd densities = log_densities(model, data.frames);
+  e.states.resize(densities.rows(), densities.cols());
+  e.starts.setZero(model.states());
+  e.steps.setZero(model.states(), model.states());
+  double log_likelihood = 0;
+  Eigen::Index from = 0;
+  for (const Eigen::Index length : data.lengths) {
+    const ChainPosterior p = forward_backward(chain, densities.middleRows(from, length));
+    e.states.middleRows(from, length) = p.states;
+    e.starts += p.states.row(0).transpose();
+    e.steps += p.steps;
+    log_likelihood += p.log_likelihood;
+    from += length;
+  }
+  return log_likelihood;
+}
+
+void maximise(std::vector<GaussianMixture>& states, const Eigen::MatrixXd& frames, const Eigen::MatrixXd& occupancies,
+              const Eigen::VectorXd& floors, CovarianceKind kind) {
+  for (Eigen::Index k = 0; k < occupancies.cols(); ++k) {
+    GaussianMixture& state = states[static_cast<std::size_t>(k)];
+    if (state.components() == 1)
+      maximise(state, frames, occupancies.col(k), floors, kind);
+    else
+      maximise(state, frames, occupancies.col(k).asDiagonal() * responsibilities(state, frames), floors, kind);
+  }
+}
+
 Hmm TrainHmm::fit(const Sequences& data, Random& random, Context& context) const {
   const Eigen::VectorXd floors = variance_floors(data.frames, floor);
   Hmm model = start_hmm(data, *this, floors, random);
-  Expectations given;
+  HmmExpectations given;
   model.trace = run_em(
       {iterations, tolerance}, data.frames.rows(),
       fmt::format("HMM of {} states, {} components each at most", model.states(), components(model)), context,

@@ -18,7 +18,10 @@ struct MarkovChain {
 MarkovChain chain_of(const Hmm& model);
 
 /// ln p(y_t | state) of every row, T × K.
-Eigen::MatrixXd log_densities(const Hmm& model, const Eigen::MatrixXd& frames);
+Eigen::MatrixXd log_densities(const std::vector<GaussianMixture>& states, const Eigen::MatrixXd& frames);
+inline Eigen::MatrixXd log_densities(const Hmm& model, const Eigen::MatrixXd& frames) {
+  return log_densities(model.observations, frames);
+}
 
 struct ChainPosterior {
   Eigen::MatrixXd states;     ///< γ, p(π_t | all frames), T × K
@@ -36,6 +39,18 @@ struct ChainPath {
 /// The likeliest path (Algorithm 2, which ends in the pointers and backtracks with the scores: the reverse is meant).
 /// Of equals the lower state. Throws as forward_backward does.
 ChainPath viterbi(const MarkovChain& chain, const Eigen::MatrixXd& log_densities);
+
+/// What an expectation step gathers over all sequences.
+struct HmmExpectations {
+  Eigen::MatrixXd states;  ///< γ, N × K
+  Eigen::VectorXd starts;  ///< expected number of sequences that begin in each state, K
+  Eigen::MatrixXd steps;   ///< and of steps from row to column, K × K
+};
+/// Gives ln p(frames). Throws as forward_backward does.
+double expect(const Hmm& model, const Sequences& data, HmmExpectations& e);
+/// The likeliest mixtures of states given their probabilities, N × K.
+void maximise(std::vector<GaussianMixture>& states, const Eigen::MatrixXd& frames, const Eigen::MatrixXd& occupancies,
+              const Eigen::VectorXd& floors, CovarianceKind kind);
 
 /// A hidden Markov model of tracks, every run of measured frames a sequence. Throws std::runtime_error, naming the
 /// track, if none has a measured frame, on different dimensions and on values that are not finite.

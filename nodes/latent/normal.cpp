@@ -42,6 +42,17 @@ Eigen::VectorXd log_normal(const Eigen::MatrixXd& covariance, const Eigen::Matri
   return log_density(distances, covariance.array().log().sum(), columns.rows());
 }
 
+Eigen::MatrixXd precision(const Eigen::MatrixXd& covariance) {
+  const Eigen::Index dims = covariance.rows();
+  if (covariance.cols() > 1) {
+    const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+    if (root.info() != Eigen::Success) refuse(dims);
+    return root.solve(Eigen::MatrixXd::Identity(dims, dims));
+  }
+  if (!(covariance.array() > 0).all()) refuse(dims);
+  return covariance.col(0).cwiseInverse().asDiagonal();
+}
+
 Eigen::VectorXd variance_floors(const Eigen::MatrixXd& frames, double share) {
   const Eigen::VectorXd variances = centred(frames).deviation.cwiseAbs2();
   const double all = variances.mean();

@@ -18,6 +18,10 @@ Eigen::VectorXd log_normal(const Eigen::LLT<Eigen::MatrixXd>& covariance, const 
 /// definite.
 Eigen::VectorXd log_normal(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& columns);
 
+/// The inverse, D × D, of a covariance D × D, or D × 1 if it is diagonal. Throws std::runtime_error if it is not
+/// positive definite.
+Eigen::MatrixXd precision(const Eigen::MatrixXd& covariance);
+
 /// The least variance that models of these frames may have, a dimension each: `share` of its variance. A dimension that
 /// does not vary has the mean variance of all in place of its own; if none varies, 1.
 Eigen::VectorXd variance_floors(const Eigen::MatrixXd& frames, double share);

@@ -11,6 +11,8 @@
 #include "nodes/mapping/slds_synthesise.h"
 #include "nodes/mapping/ssgpdm.h"
 #include "nodes/mapping/ssgpdm_synthesise.h"
+#include "nodes/mapping/voice_puppetry.h"
+#include "nodes/mapping/voice_puppetry_synthesise.h"
 #include "nodes/mapping/windowed_cca.h"
 
 namespace talkgraph {
@@ -24,12 +26,14 @@ void register_mapping(Registry& registry) {
   registry.add<SynthesiseSharedLds>();
   registry.add<SynthesiseSlds>();
   registry.add<SynthesiseSsgpdm>();
+  registry.add<SynthesiseVoicePuppetry>();
   registry.add<SynthesiseWindowedCca>();
   registry.add<TrainDpds>();
   registry.add<TrainJointGmm>();
   registry.add<TrainPhoneGaussians>();
   registry.add<TrainSharedLds>();
   registry.add<TrainSlds>();
+  registry.add<TrainVoicePuppetry>();
   registry.add<TrainWindowedCca>();
 }
 
