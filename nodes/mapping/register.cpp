@@ -1,5 +1,7 @@
 #include "nodes/mapping/register.h"
 
+#include "nodes/mapping/coupled_hmm.h"
+#include "nodes/mapping/coupled_hmm_synthesise.h"
 #include "nodes/mapping/dpds.h"
 #include "nodes/mapping/dpds_decode.h"
 #include "nodes/mapping/dpds_synthesise.h"
@@ -20,6 +22,7 @@ namespace talkgraph {
 void register_mapping(Registry& registry) {
   registry.add<AssembleSsgpdm>();
   registry.add<DecodeDpds>();
+  registry.add<SynthesiseCoupledHmm>();
   registry.add<SynthesiseDpds>();
   registry.add<SynthesiseJointGmm>();
   registry.add<SynthesisePhoneGaussians>();
@@ -28,6 +31,7 @@ void register_mapping(Registry& registry) {
   registry.add<SynthesiseSsgpdm>();
   registry.add<SynthesiseVoicePuppetry>();
   registry.add<SynthesiseWindowedCca>();
+  registry.add<TrainCoupledHmm>();
   registry.add<TrainDpds>();
   registry.add<TrainJointGmm>();
   registry.add<TrainPhoneGaussians>();
