@@ -1,6 +1,7 @@
 #include "nodes/mapping/coupled_hmm.h"
 
 #include "nodes/latent/coupled_hmm.h"
+#include "nodes/latent/em.h"
 #include "nodes/latent/trajectory.h"
 #include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
@@ -35,14 +36,8 @@ void describe(Description<TrainCoupledHmm>& d) {
       .within(0, 2)
       .doc("1: the sound's velocities are beside its frames; 2: its accelerations too");
   d.param("covariance", &TrainCoupledHmm::covariance).doc("of sound and face: full, or variances only");
-  d.param("floor", &TrainCoupledHmm::floor)
-      .positive()
-      .doc("least variance of a Gaussian in any direction, as a share of the frames' variance a dimension");
   d.param("prior", &TrainCoupledHmm::prior).positive().doc("each start and transition is counted this often more");
-  d.param("iterations", &TrainCoupledHmm::iterations).at_least(0).doc("limit of expectation maximisation");
-  d.param("tolerance", &TrainCoupledHmm::tolerance)
-      .at_least(0)
-      .doc("it ends when the log-posterior gains no more than this in an iteration, a frame");
+  describe_em(d, "a Gaussian");
 }
 
 }  // namespace talkgraph

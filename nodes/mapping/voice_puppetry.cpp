@@ -1,5 +1,6 @@
 #include "nodes/mapping/voice_puppetry.h"
 
+#include "nodes/latent/em.h"
 #include "nodes/latent/entropic_hmm.h"
 #include "nodes/latent/gmm.h"
 #include "nodes/latent/hmm.h"
@@ -50,13 +51,7 @@ void describe(Description<TrainVoicePuppetry>& d) {
       .at_least(0)
       .doc("weight of the entropies in training; 1 is Brand's, 0 gives maximum likelihood");
   d.param("covariance", &TrainVoicePuppetry::covariance).doc("of face and sound: full, or variances only");
-  d.param("floor", &TrainVoicePuppetry::floor)
-      .positive()
-      .doc("least variance of a Gaussian in any direction, as a share of the frames' variance a dimension");
-  d.param("iterations", &TrainVoicePuppetry::iterations).at_least(0).doc("limit of expectation maximisation");
-  d.param("tolerance", &TrainVoicePuppetry::tolerance)
-      .at_least(0)
-      .doc("it has settled when the log-posterior gains no more than this in an iteration, a frame");
+  describe_em(d, "a Gaussian");
 }
 
 }  // namespace talkgraph
