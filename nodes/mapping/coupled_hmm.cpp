@@ -10,7 +10,7 @@ namespace talkgraph {
 
 CoupledHmm TrainCoupledHmm::operator()(const Collected<Track>& audio, const Collected<Track>& visual, Random& random,
                                        Context& context) const {
-  const SideBySide both = side_by_side(audio, visual);
+  const JoinedStreams both = side_by_side(audio, visual);
   const Sequences data = measured_runs(both.tracks);
   const Eigen::MatrixXd heard = with_changes({data.frames.leftCols(both.audio), data.lengths}, changes);
   const Eigen::MatrixXd seen = data.frames.rightCols(data.frames.cols() - both.audio);

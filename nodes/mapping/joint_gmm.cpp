@@ -73,7 +73,7 @@ StateGaussians gaussians_of(const JointGmm& model) { return {model.means, model.
 
 JointGmm TrainJointGmm::operator()(const Collected<Track>& audio, const Collected<Track>& visual, Random& random,
                                    Context& context) const {
-  const SideBySide both = side_by_side(audio, visual);
+  const JoinedStreams both = side_by_side(audio, visual);
   const Sequences data = measured_runs(both.tracks);
   const Scaling scaling = scaling_of(data.frames);
   JointGmm model;

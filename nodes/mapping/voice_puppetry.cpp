@@ -27,7 +27,7 @@ std::vector<GaussianMixture> remapped(const Eigen::MatrixXd& audio, const Eigen:
 
 VoicePuppetry TrainVoicePuppetry::operator()(const Collected<Track>& audio, const Collected<Track>& visual,
                                              Random& random, Context& context) const {
-  const SideBySide both = side_by_side(audio, visual);
+  const JoinedStreams both = side_by_side(audio, visual);
   const Sequences data = measured_runs(both.tracks);
   const auto heard = data.frames.leftCols(both.audio), seen = data.frames.rightCols(data.frames.cols() - both.audio);
   VoicePuppetry model{scaling_of(heard), scaling_of(seen), {}, {}};

@@ -42,7 +42,7 @@ Sequences training_windows(const WindowedCca& model, const Collected<Track>& tra
 
 WindowedCca TrainWindowedCca::operator()(const Collected<Track>& audio, const Collected<Track>& visual,
                                          Context& context) const {
-  const SideBySide both = side_by_side(audio, visual);
+  const JoinedStreams both = side_by_side(audio, visual);
   const Scaling scaling = scaling_of(measured_runs(both.tracks).frames);
   const Eigen::Index seen = scaling.mean.size() - both.audio;
   WindowedCca model;
