@@ -8,6 +8,7 @@
 #include "nodes/face/eyes.h"
 #include "nodes/face/landmarks.h"
 #include "nodes/face/modes.h"
+#include "nodes/face/mouth_space.h"
 #include "nodes/face/mouths.h"
 #include "nodes/face/parameters.h"
 #include "nodes/face/prototype_sheet.h"
@@ -37,6 +38,8 @@ void register_face(Registry& registry) {
   registry.add<MakeEyes>();
   registry.add<KeepMouths>();
   registry.add<SelectMouths>();
+  registry.add<LearnMouthSpace>();
+  registry.add<MeasureMouth>();
   registry.add<RedrawFace>();
   registry.add<Crop>();
   registry.add<SideBySide>();

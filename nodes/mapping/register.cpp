@@ -1,5 +1,6 @@
 #include "nodes/mapping/register.h"
 
+#include "nodes/mapping/context_gp.h"
 #include "nodes/mapping/coupled_hmm.h"
 #include "nodes/mapping/coupled_hmm_synthesise.h"
 #include "nodes/mapping/dpds.h"
@@ -22,6 +23,7 @@ namespace talkgraph {
 void register_mapping(Registry& registry) {
   registry.add<AssembleSsgpdm>();
   registry.add<DecodeDpds>();
+  registry.add<PredictContextGp>();
   registry.add<SynthesiseCoupledHmm>();
   registry.add<SynthesiseDpds>();
   registry.add<SynthesiseJointGmm>();
@@ -31,6 +33,7 @@ void register_mapping(Registry& registry) {
   registry.add<SynthesiseSsgpdm>();
   registry.add<SynthesiseVoicePuppetry>();
   registry.add<SynthesiseWindowedCca>();
+  registry.add<TrainContextGp>();
   registry.add<TrainCoupledHmm>();
   registry.add<TrainDpds>();
   registry.add<TrainJointGmm>();

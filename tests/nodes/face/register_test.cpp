@@ -8,7 +8,7 @@ namespace {
 TEST(RegisterFace, OffersItsNodes) {
   Registry registry;
   register_face(registry);
-  EXPECT_EQ(registry.names().size(), 21u);
+  EXPECT_EQ(registry.names().size(), 23u);
   EXPECT_TRUE(registry.find("face.track")->stored);
   EXPECT_TRUE(registry.find("face.prototypes")->uses_random);
 }

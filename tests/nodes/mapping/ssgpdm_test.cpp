@@ -436,6 +436,8 @@ TEST(Mapping, RegistersItsNodes) {
   register_mapping(registry);
   EXPECT_TRUE(registry.find("mapping.ssgpdm"));
   EXPECT_TRUE(registry.find("mapping.ssgpdm_synthesise"));
+  EXPECT_TRUE(registry.find("mapping.context_gp"));
+  EXPECT_TRUE(registry.find("mapping.context_gp_predict"));
 }
 
 }  // namespace

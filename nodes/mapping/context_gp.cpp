@@ -1,0 +1,270 @@
+#include "nodes/mapping/context_gp.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "nodes/types/visemes.h"
+
+namespace talkgraph {
+namespace {
+
+/// One utterance of which all that training needs is known.
+struct Utterance {
+  const Track* audio;
+  const PhoneTrack* phones;
+  const Track* visual;
+  Eigen::Index frames;
+};
+
+std::vector<Utterance> pair_up(const Collected<Track>& audio, const Collected<PhoneTrack>& phones,
+                               const Collected<Track>& visual) {
+  std::vector<Utterance> utterances;
+  for (std::size_t i = 0; i < audio.size(); ++i) {
+    const auto& key = audio.key(i);
+    const Utterance u{&audio[i], phones.find(key), visual.find(key), 0};
+    if (!u.phones || !u.visual) continue;
+    if (std::abs(u.audio->frames() - u.visual->frames()) > 2)
+      throw std::runtime_error(fmt::format("{}: {} audio frames, {} visual frames; bring both to one rate", key,
+                                           u.audio->frames(), u.visual->frames()));
+    if (!u.audio->values.allFinite() || !u.visual->values.allFinite())
+      throw std::runtime_error(key + ": NaN or infinite values");
+    utterances.push_back(u);
+    utterances.back().frames = std::min(u.audio->frames(), u.visual->frames());
+    if (u.audio->dimension() != utterances[0].audio->dimension() ||
+        u.visual->dimension() != utterances[0].visual->dimension())
+      throw std::runtime_error(key + ": other dimensions than the tracks before");
+  }
+  if (utterances.empty())
+    throw std::runtime_error("no training utterance has sound, phones and face: is the selection empty?");
+  return utterances;
+}
+
+std::vector<std::string> inventory(const std::vector<Utterance>& utterances) {
+  std::set<std::string> met;
+  for (const auto& u : utterances)
+    for (const auto& phone : u.phones->phones) met.insert(phone.label);
+  return {met.begin(), met.end()};
+}
+
+/// Mean of the audio features, and 1 / deviation, 0 where only rounding varies.
+void z_score(const std::vector<Utterance>& utterances, ContextGp& model) {
+  const auto dimension = utterances[0].audio->dimension();
+  double n = 0;
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(dimension), squares = sum;
+  for (const auto& u : utterances) {
+    sum += u.audio->values.topRows(u.frames).colwise().sum();
+    n += static_cast<double>(u.frames);
+  }
+  model.audio_mean = sum / std::max(n, 1.0);
+  for (const auto& u : utterances)
+    squares += (u.audio->values.topRows(u.frames).rowwise() - model.audio_mean).colwise().squaredNorm();
+  const Eigen::RowVectorXd deviation = (squares / std::max(n, 1.0)).cwiseSqrt();
+  model.audio_scale =
+      (deviation.array() > 1e-10 * model.audio_mean.array().abs()).select(deviation.cwiseInverse(), 0.0);
+}
+
+Eigen::RowVectorXd window_of(int reach, double width) {
+  Eigen::RowVectorXd w(2 * reach + 1);
+  for (int l = -reach; l <= reach; ++l) w[l + reach] = std::exp(-std::pow(l / width, 2));
+  return w / w.sum();
+}
+
+/// What the kernel compares, a row a frame.
+Eigen::MatrixXd described(const ContextGp& model, const Track& audio, const PhoneTrack& phones, Eigen::Index frames) {
+  Eigen::MatrixXd f(frames, model.audio_mean.size() + static_cast<Eigen::Index>(model.phones.size()));
+  f.leftCols(model.audio_mean.size()) =
+      (audio.values.topRows(frames).rowwise() - model.audio_mean).array().rowwise() * model.audio_scale.array();
+  f.rightCols(static_cast<Eigen::Index>(model.phones.size())) =
+      model.phone_scale * phone_shares(phones, model.phones, audio).topRows(frames);
+  return f;
+}
+
+/// Kernel of all frames of one utterance (rows) with all of another.
+Eigen::MatrixXd kernel(const Eigen::RowVectorXd& window, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd distance = -2 * a * b.transpose();
+  distance.colwise() += a.rowwise().squaredNorm();
+  distance.rowwise() += b.rowwise().squaredNorm().transpose();
+  const Eigen::Index n = window.size() / 2;
+  Eigen::MatrixXd exponent = Eigen::MatrixXd::Zero(a.rows(), b.rows());
+  for (Eigen::Index l = -n; l <= n; ++l)
+    for (Eigen::Index j = 0; j < b.rows(); ++j) {
+      const auto column = distance.col(std::clamp<Eigen::Index>(j + l, 0, b.rows() - 1));
+      for (Eigen::Index i = 0; i < a.rows(); ++i)
+        exponent(i, j) += window[l + n] * column[std::clamp<Eigen::Index>(i + l, 0, a.rows() - 1)];
+    }
+  return (-exponent.cwiseMax(0)).array().exp();
+}
+
+/// Whether each frame is in speech or at most `margin` frames from it.
+std::vector<bool> near_speech(const PhoneTrack& phones, const Track& like, Eigen::Index frames, int margin) {
+  std::vector<bool> near(static_cast<std::size_t>(frames));
+  for (const auto& phone : phones.phones) {
+    if (is_pause(phone.label)) continue;
+    for (Eigen::Index t = 0; t < frames; ++t) {
+      const double reach = (0.5 + margin) / like.rate.value();
+      if (like.time(t) > phone.start - reach && like.time(t) < phone.end + reach)
+        near[static_cast<std::size_t>(t)] = true;
+    }
+  }
+  return near;
+}
+
+/// Every so many of these, not more than `most`.
+std::vector<Eigen::Index> thinned(const std::vector<Eigen::Index>& rows, std::size_t most) {
+  if (rows.size() <= most) return rows;
+  std::vector<Eigen::Index> kept(most);
+  for (std::size_t i = 0; i < most; ++i) kept[i] = rows[i * rows.size() / most];
+  return kept;
+}
+
+std::vector<Eigen::Index> chosen(const TrainContextGp& node, const std::vector<Utterance>& utterances) {
+  std::vector<Eigen::Index> rows;
+  Eigen::Index start = 0;
+  for (const auto& u : utterances) {
+    const auto near = near_speech(*u.phones, *u.audio, u.frames, node.margin);
+    for (Eigen::Index t = 0; t < u.frames; ++t)
+      if (!u.visual->is_lost(t) && (near[static_cast<std::size_t>(t)] || t % node.pauses == 0))
+        rows.push_back(start + t);
+    start += u.frames;
+  }
+  if (rows.empty()) throw std::runtime_error("no training frame was measured: are all lost?");
+  return thinned(rows, static_cast<std::size_t>(node.max_frames));
+}
+
+/// Lower triangle of the kernel of the chosen rows, filled utterance by utterance.
+Eigen::MatrixXd covariance(const ContextGp& model, const std::vector<Eigen::Index>& rows, Context& context) {
+  struct Block {
+    Eigen::Index start, length, at;  ///< frames of the utterance; its first chosen row
+    std::vector<Eigen::Index> local;
+  };
+  std::vector<Block> blocks;
+  Eigen::Index start = 0;
+  std::size_t r = 0;
+  for (const auto length : model.lengths) {
+    Block block{start, length, static_cast<Eigen::Index>(r), {}};
+    for (; r < rows.size() && rows[r] < start + length; ++r) block.local.push_back(rows[r] - start);
+    blocks.push_back(std::move(block));
+    start += length;
+  }
+  Eigen::MatrixXd k(rows.size(), rows.size());
+  for (std::size_t j = 0; j < blocks.size(); ++j) {
+    context.check_cancelled();
+    const Eigen::MatrixXd b = model.frames.middleRows(blocks[j].start, blocks[j].length);
+    for (std::size_t i = j; i < blocks.size(); ++i) {
+      const Eigen::MatrixXd a = model.frames.middleRows(blocks[i].start, blocks[i].length);
+      k.block(blocks[i].at, blocks[j].at, static_cast<Eigen::Index>(blocks[i].local.size()),
+              static_cast<Eigen::Index>(blocks[j].local.size())) =
+          kernel(model.window, a, b)(blocks[i].local, blocks[j].local);
+    }
+    context.progress(0.5 * static_cast<double>(j + 1) / static_cast<double>(blocks.size()));
+  }
+  return k;
+}
+
+}  // namespace
+
+Eigen::MatrixXd phone_shares(const PhoneTrack& phones, const std::vector<std::string>& inventory, const Track& like) {
+  Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(like.frames(), static_cast<Eigen::Index>(inventory.size()));
+  const double rate = like.rate.value();
+  for (const auto& phone : phones.phones) {
+    const auto at = std::find(inventory.begin(), inventory.end(), phone.label);
+    if (at == inventory.end()) continue;
+    const double from = (phone.start - like.start) * rate + 0.5, to = (phone.end - like.start) * rate + 0.5;
+    const auto first = std::max<Eigen::Index>(0, static_cast<Eigen::Index>(std::floor(from)));
+    for (Eigen::Index t = first; t < like.frames() && static_cast<double>(t) < to; ++t)
+      shares(t, at - inventory.begin()) +=
+          std::max(0.0, std::min(to, static_cast<double>(t + 1)) - std::max(from, static_cast<double>(t)));
+  }
+  return shares;
+}
+
+ContextGp TrainContextGp::operator()(const Collected<Track>& audio, const Collected<PhoneTrack>& phones,
+                                     const Collected<Track>& visual, Context& context) const {
+  const auto utterances = pair_up(audio, phones, visual);
+  ContextGp model;
+  z_score(utterances, model);
+  model.audio_scale *= std::sqrt(0.5 * sound / static_cast<double>(model.audio_mean.size()));
+  model.phones = inventory(utterances);
+  model.phone_scale = std::sqrt(0.5 * this->phones);
+  model.window = window_of(reach, width);
+
+  Eigen::Index total = 0;
+  for (const auto& u : utterances) total += u.frames;
+  model.frames.resize(total, model.audio_mean.size() + static_cast<Eigen::Index>(model.phones.size()));
+  Eigen::MatrixXd z(total, utterances[0].visual->dimension());
+  Eigen::Index at = 0;
+  for (const auto& u : utterances) {
+    model.frames.middleRows(at, u.frames) = described(model, *u.audio, *u.phones, u.frames);
+    z.middleRows(at, u.frames) = u.visual->values.topRows(u.frames);
+    model.lengths.push_back(u.frames);
+    at += u.frames;
+  }
+
+  const auto rows = chosen(*this, utterances);
+  Eigen::MatrixXd targets = z(rows, Eigen::all);
+  model.mean = targets.colwise().mean();
+  targets.rowwise() -= model.mean;
+  Eigen::MatrixXd k = covariance(model, rows, context);
+  k.diagonal().array() += noise;
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(k);
+  if (factor.info() != Eigen::Success)
+    throw std::runtime_error("the covariance of the training frames cannot be factorised: raise noise");
+  model.weights.setZero(total, targets.cols());
+  model.weights(rows, Eigen::all) = factor.solve(targets);
+  context.log(fmt::format("{} of {} frames learnt, {} phones", rows.size(), total, model.phones.size()));
+  return model;
+}
+
+Track PredictContextGp::operator()(const ContextGp& model, const Track& audio, const PhoneTrack& phones) const {
+  if (audio.dimension() != model.audio_mean.size())
+    throw std::runtime_error(fmt::format("audio features of {} dimensions, the model was trained on {}",
+                                         audio.dimension(), model.audio_mean.size()));
+  if (!audio.values.allFinite())
+    throw std::runtime_error("audio features with NaN or infinite values: look at the stage before");
+  const Eigen::MatrixXd f = described(model, audio, phones, audio.frames());
+  Track track;
+  track.rate = audio.rate;
+  track.start = audio.start;
+  track.values = model.mean.replicate(audio.frames(), 1);
+  Eigen::Index start = 0;
+  for (const auto length : model.lengths) {
+    track.values +=
+        kernel(model.window, f, model.frames.middleRows(start, length)) * model.weights.middleRows(start, length);
+    start += length;
+  }
+  return track;
+}
+
+void describe(Description<TrainContextGp>& d) {
+  d.type("mapping.context_gp").stored();
+  d.summary("learns a Gaussian process of visual parameters whose kernel compares sound and phones on both sides");
+  d.input("audio", "speech features at the video rate of the training utterances")
+      .input("phones", "their phones with times")
+      .input("visual", "their visual parameters, normalised")
+      .output("model", "the process");
+  d.param("reach", &TrainContextGp::reach).within(0, 50).unit("frames").doc("neighbours on each side");
+  d.param("width", &TrainContextGp::width).positive().unit("frames").doc("of the window over the neighbours");
+  d.param("sound", &TrainContextGp::sound)
+      .at_least(0)
+      .doc("what unrelated sound costs, natural logarithm of the kernel");
+  d.param("phones", &TrainContextGp::phones).at_least(0).doc("what a different phone costs; 0: sound alone");
+  d.param("noise", &TrainContextGp::noise).positive().doc("variance of the noise, of the signal's");
+  d.param("margin", &TrainContextGp::margin).at_least(0).unit("frames").doc("around speech, where all is learnt");
+  d.param("pauses", &TrainContextGp::pauses).at_least(1).doc("of other frames every n-th is learnt");
+  d.param("max_frames", &TrainContextGp::max_frames).at_least(1).doc("most that are learnt, at even distances");
+}
+
+void describe(Description<PredictContextGp>& d) {
+  d.type("mapping.context_gp_predict").summary("visual parameters of new speech by mapping.context_gp");
+  d.input("model", "of mapping.context_gp")
+      .input("audio", "speech features at the video rate")
+      .input("phones", "with their times")
+      .output("visual", "mean of the process");
+}
+
+}  // namespace talkgraph

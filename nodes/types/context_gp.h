@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "graph/value.h"
+
+namespace talkgraph {
+
+/// A Gaussian process from sound and phones around a frame to visual parameters, with contexts that are soft. A frame
+/// is described by its sound and by how much of it each phone takes; the kernel of two frames is
+///   k(t, t') = exp(−Σ_l window_l |f_{t+l} − f'_{t'+l}|²),
+/// frames beyond an end of an utterance being that end's.
+struct ContextGp {
+  Eigen::RowVectorXd audio_mean;   ///< of the audio dimensions
+  Eigen::RowVectorXd audio_scale;  ///< what multiplies them; 0 for a constant one
+  std::vector<std::string> phones;
+  double phone_scale = 0;             ///< what multiplies the phones' shares
+  Eigen::RowVectorXd window;          ///< 2n + 1 weights of the neighbours, which sum to 1
+  std::vector<std::int64_t> lengths;  ///< of the training utterances, which sum to N
+  Eigen::MatrixXd frames;             ///< f of the training utterances, N × (audio + phones)
+  Eigen::MatrixXd weights;            ///< N × D, 0 where nothing was learnt
+  Eigen::RowVectorXd mean;            ///< of the visual parameters, 1 × D
+};
+template <>
+inline constexpr PortType port_type<ContextGp>{"ContextGp", 1};
+void fields(Archive& ar, ContextGp& g);
+
+}  // namespace talkgraph

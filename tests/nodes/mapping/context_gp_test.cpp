@@ -1,0 +1,183 @@
+#include "nodes/mapping/context_gp.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "tests/nodes/latent/gaussian.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::gaussian;
+
+Track track(Eigen::MatrixXd values) {
+  Track t;
+  t.values = std::move(values);
+  t.start = 0.02;
+  return t;
+}
+
+/// Phones of so many frames each.
+PhoneTrack said(const std::vector<std::pair<std::string, int>>& phones) {
+  PhoneTrack out;
+  double at = 0;
+  for (const auto& [label, frames] : phones) {
+    out.phones.push_back({label, at, at + frames / 25.0});
+    at += frames / 25.0;
+  }
+  return out;
+}
+
+struct Corpus {
+  Collected<Track> audio, visual;
+  Collected<PhoneTrack> phones;
+  void add(const std::string& key, Track a, PhoneTrack p, Track v) {
+    audio.add(key, std::move(a));
+    phones.add(key, std::move(p));
+    visual.add(key, std::move(v));
+  }
+  ContextGp learn(const TrainContextGp& node) const {
+    Context context;
+    return node(audio, phones, visual, context);
+  }
+};
+
+Corpus random_corpus() {
+  Corpus corpus;
+  corpus.add("a", track(gaussian(12, 3, 1)), said({{"b", 3}, {"ih", 5}, {"n", 4}}), track(gaussian(12, 2, 2)));
+  corpus.add("b", track(gaussian(9, 3, 3)), said({{"n", 4}, {"b", 5}}), track(gaussian(9, 2, 4)));
+  return corpus;
+}
+
+/// Every frame with all it is compared by, weighted: the textbook's way to the same kernel.
+Eigen::MatrixXd stacked(const TrainContextGp& node, const Eigen::MatrixXd& z_scored, const Eigen::MatrixXd& shares) {
+  const Eigen::Index frames = z_scored.rows(), d = z_scored.cols(), p = shares.cols();
+  Eigen::VectorXd w(2 * node.reach + 1);
+  for (int l = -node.reach; l <= node.reach; ++l) w[l + node.reach] = std::exp(-l * l / (node.width * node.width));
+  w /= w.sum();
+  Eigen::MatrixXd out(frames, w.size() * (d + p));
+  for (Eigen::Index t = 0; t < frames; ++t)
+    for (int l = -node.reach; l <= node.reach; ++l) {
+      const auto from = std::clamp<Eigen::Index>(t + l, 0, frames - 1);
+      const double root = std::sqrt(w[l + node.reach]);
+      out.block(t, (l + node.reach) * (d + p), 1, d) =
+          root * std::sqrt(node.sound / static_cast<double>(d)) * z_scored.row(from);
+      out.block(t, (l + node.reach) * (d + p) + d, 1, p) = root * std::sqrt(node.phones) * shares.row(from);
+    }
+  return out;
+}
+
+Eigen::MatrixXd rbf(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return Eigen::MatrixXd::NullaryExpr(a.rows(), b.rows(), [&](Eigen::Index i, Eigen::Index j) {
+    return std::exp(-0.5 * (a.row(i) - b.row(j)).squaredNorm());
+  });
+}
+
+TEST(ContextGp, IsTheTextbooksProcess) {
+  const auto corpus = random_corpus();
+  const TrainContextGp node{.reach = 2, .width = 1.5, .sound = 0.7, .phones = 1.3, .noise = 0.4};
+  const auto model = corpus.learn(node);
+  ASSERT_EQ(model.phones, (std::vector<std::string>{"b", "ih", "n"}));
+
+  Eigen::MatrixXd audio(21, 3), z(21, 2);
+  audio << corpus.audio[0].values, corpus.audio[1].values;
+  z << corpus.visual[0].values, corpus.visual[1].values;
+  const Eigen::RowVectorXd mean = audio.colwise().mean();
+  const Eigen::RowVectorXd deviation = ((audio.rowwise() - mean).colwise().squaredNorm() / 21).cwiseSqrt();
+  const auto described = [&](const Track& a, const PhoneTrack& p) {
+    return stacked(node, (a.values.rowwise() - mean).array().rowwise() / deviation.array(),
+                   phone_shares(p, model.phones, a));
+  };
+  const Eigen::MatrixXd first = described(corpus.audio[0], corpus.phones[0]);
+  Eigen::MatrixXd x(21, first.cols());
+  x << first, described(corpus.audio[1], corpus.phones[1]);
+  const Eigen::RowVectorXd z_mean = z.colwise().mean();
+  const Eigen::MatrixXd weights =
+      (rbf(x, x) + 0.4 * Eigen::MatrixXd::Identity(21, 21)).fullPivLu().solve(z.rowwise() - z_mean);
+
+  const Track heard = track(gaussian(10, 3, 5));
+  const auto phones = said({{"ih", 2}, {"b", 4}, {"n", 4}});
+  const Eigen::MatrixXd expected = (rbf(described(heard, phones), x) * weights).rowwise() + z_mean;
+  const auto predicted = PredictContextGp{}(model, heard, phones);
+  EXPECT_LT((predicted.values - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_DOUBLE_EQ(predicted.start, 0.02);
+}
+
+TEST(ContextGp, PhoneSharesByHand) {
+  PhoneTrack phones{{{"b", 0.0, 0.05}, {"ih", 0.05, 0.12}, {"zh", 0.12, 0.2}}};
+  const Eigen::MatrixXd shares = phone_shares(phones, {"b", "ih"}, track(Eigen::MatrixXd::Zero(4, 1)));
+  Eigen::MatrixXd expected(4, 2);
+  expected << 1, 0, 0.25, 0.75, 0, 1, 0, 0;
+  EXPECT_LT((shares - expected).norm(), 1e-12);
+}
+
+/// The sound tells nothing; the lips round for the vowel before it is heard.
+TEST(ContextGp, KnowsTheNextPhone) {
+  Corpus corpus;
+  const Track silent_sound = track(Eigen::MatrixXd::Zero(8, 1));
+  for (int i = 0; i < 6; ++i) {
+    const bool round = i % 2;
+    corpus.add(std::to_string(i), silent_sound, said({{"t", 4}, {round ? "uw" : "iy", 4}}),
+               track(Eigen::MatrixXd::Constant(8, 1, round ? 1 : -1)));
+  }
+  const auto next = said({{"t", 4}, {"uw", 4}});
+  const auto model = corpus.learn({.reach = 4, .width = 3, .noise = 0.01});
+  EXPECT_GT(PredictContextGp{}(model, silent_sound, next).values(2, 0), 0.8);
+  const auto deaf = corpus.learn({.reach = 4, .width = 3, .phones = 0, .noise = 0.01});
+  EXPECT_NEAR(PredictContextGp{}(deaf, silent_sound, next).values(2, 0), 0, 1e-9);
+}
+
+TEST(ContextGp, PausesAreThinnedAndLostFramesLeftOut) {
+  Corpus corpus;
+  auto visual = track(gaussian(20, 2, 7));
+  visual.lost = {1};
+  corpus.add("a", track(gaussian(20, 3, 8)), said({{"b", 4}, {"sil", 16}}), visual);
+  const auto model = corpus.learn({.margin = 2, .pauses = 5});
+  std::vector<int> learnt;
+  for (int t = 0; t < 20; ++t)
+    if (!model.weights.row(t).isZero()) learnt.push_back(t);
+  EXPECT_EQ(learnt, (std::vector<int>{0, 2, 3, 4, 5, 10, 15}));
+  const auto few = corpus.learn({.margin = 2, .pauses = 1, .max_frames = 5});
+  EXPECT_EQ((few.weights.rowwise().squaredNorm().array() > 0).count(), 5);
+}
+
+TEST(ContextGp, AnswersToPhonesAndSoundItHasNotMet) {
+  const auto model = random_corpus().learn({});
+  const auto predicted = PredictContextGp{}(model, track(Eigen::MatrixXd::Constant(5, 3, 1e6)), said({{"zh", 5}}));
+  EXPECT_LT((predicted.values.rowwise() - model.mean).norm(), 1e-9);
+  EXPECT_EQ(PredictContextGp{}(model, track(Eigen::MatrixXd(0, 3)), {}).values.rows(), 0);
+}
+
+TEST(ContextGp, SaysWhatIsWrong) {
+  EXPECT_THROW(Corpus{}.learn({}), std::runtime_error);
+  Corpus unpaired = random_corpus();
+  unpaired.phones = {};
+  EXPECT_THROW(unpaired.learn({}), std::runtime_error);
+
+  const auto with = [](Track audio, Track visual) {
+    auto corpus = random_corpus();
+    corpus.add("c", std::move(audio), said({{"b", 4}}), std::move(visual));
+    return corpus;
+  };
+  EXPECT_THROW(with(track(gaussian(4, 2, 1)), track(gaussian(4, 2, 1))).learn({}), std::runtime_error);
+  EXPECT_THROW(with(track(gaussian(4, 3, 1)), track(gaussian(8, 2, 1))).learn({}), std::runtime_error);
+  auto broken = gaussian(4, 3, 1);
+  broken(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(with(track(broken), track(gaussian(4, 2, 1))).learn({}), std::runtime_error);
+
+  Corpus lost;
+  auto visual = track(gaussian(3, 2, 1));
+  visual.lost = {0, 1, 2};
+  lost.add("a", track(gaussian(3, 3, 1)), said({{"b", 3}}), visual);
+  EXPECT_THROW(lost.learn({}), std::runtime_error);
+
+  const auto model = random_corpus().learn({});
+  EXPECT_THROW(PredictContextGp{}(model, track(gaussian(4, 2, 1)), said({{"b", 4}})), std::runtime_error);
+  EXPECT_THROW(PredictContextGp{}(model, track(broken), said({{"b", 4}})), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace talkgraph
