@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "nodes/face/geometry.h"
@@ -87,8 +88,9 @@ MouthSpace LearnMouthSpace::operator()(const Collected<LandmarkTrack>& landmarks
     columns.middleCols(at, frames) = mouths(clip, space.mean);
     at += frames;
   }
+  if (columns.norm() <= 1e-9 * std::sqrt(static_cast<double>(at)) * space.mean.norm())  // rounding
+    throw std::runtime_error("the mouth does not move: nothing can be measured");
   space.modes = pca(columns, retain).modes;
-  if (space.modes.cols() == 0) throw std::runtime_error("the mouth does not move: nothing can be measured");
   return space;
 }
 

@@ -209,13 +209,14 @@ ContextGp TrainContextGp::operator()(const Collected<Track>& audio, const Collec
   Eigen::MatrixXd targets = z(rows, Eigen::all);
   model.mean = targets.colwise().mean();
   targets.rowwise() -= model.mean;
-  Eigen::MatrixXd k = covariance(model, rows, context);
+  Eigen::MatrixXd k = covariance(model, rows, context);  // and then, in its place, its Cholesky factor
   k.diagonal().array() += noise;
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(k);
-  if (factor.info() != Eigen::Success)
+  if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(k).info() != Eigen::Success)
     throw std::runtime_error("the covariance of the training frames cannot be factorised: raise noise");
+  k.triangularView<Eigen::Lower>().solveInPlace(targets);
+  k.triangularView<Eigen::Lower>().adjoint().solveInPlace(targets);
   model.weights.setZero(total, targets.cols());
-  model.weights(rows, Eigen::all) = factor.solve(targets);
+  model.weights(rows, Eigen::all) = targets;
   context.log(fmt::format("{} of {} frames learnt, {} phones", rows.size(), total, model.phones.size()));
   return model;
 }
