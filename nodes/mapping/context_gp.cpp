@@ -102,19 +102,18 @@ Eigen::MatrixXd kernel(const Eigen::RowVectorXd& window, const Eigen::MatrixXd& 
 
 /// Whether each frame is in speech or at most `margin` frames from it.
 std::vector<bool> near_speech(const PhoneTrack& phones, const Track& like, Eigen::Index frames, int margin) {
+  const double reach = (0.5 + margin) / like.rate.value();
   std::vector<bool> near(static_cast<std::size_t>(frames));
   for (const auto& phone : phones.phones) {
     if (is_pause(phone.label)) continue;
-    for (Eigen::Index t = 0; t < frames; ++t) {
-      const double reach = (0.5 + margin) / like.rate.value();
+    for (Eigen::Index t = 0; t < frames; ++t)
       if (like.time(t) > phone.start - reach && like.time(t) < phone.end + reach)
         near[static_cast<std::size_t>(t)] = true;
-    }
   }
   return near;
 }
 
-/// Every so many of these, not more than `most`.
+/// These, or `most` of them at even distances.
 std::vector<Eigen::Index> thinned(const std::vector<Eigen::Index>& rows, std::size_t most) {
   if (rows.size() <= most) return rows;
   std::vector<Eigen::Index> kept(most);
@@ -136,30 +135,38 @@ std::vector<Eigen::Index> chosen(const TrainContextGp& node, const std::vector<U
   return thinned(rows, static_cast<std::size_t>(node.max_frames));
 }
 
-/// Lower triangle of the kernel of the chosen rows, filled utterance by utterance.
-Eigen::MatrixXd covariance(const ContextGp& model, const std::vector<Eigen::Index>& rows, Context& context) {
-  struct Block {
-    Eigen::Index start, length, at;  ///< frames of the utterance; its first chosen row
-    std::vector<Eigen::Index> local;
-  };
+/// The chosen frames of an utterance.
+struct Block {
+  Eigen::MatrixXd frames;           ///< all of the utterance, described
+  Eigen::Index at;                  ///< first row of the chosen in the covariance
+  std::vector<Eigen::Index> local;  ///< the chosen, counted from its first frame
+
+  auto size() const { return static_cast<Eigen::Index>(local.size()); }
+};
+
+std::vector<Block> blocks_of(const ContextGp& model, const std::vector<Eigen::Index>& rows) {
   std::vector<Block> blocks;
   Eigen::Index start = 0;
   std::size_t r = 0;
   for (const auto length : model.lengths) {
-    Block block{start, length, static_cast<Eigen::Index>(r), {}};
+    Block block{model.frames.middleRows(start, length), static_cast<Eigen::Index>(r), {}};
     for (; r < rows.size() && rows[r] < start + length; ++r) block.local.push_back(rows[r] - start);
-    blocks.push_back(std::move(block));
+    if (!block.local.empty()) blocks.push_back(std::move(block));
     start += length;
   }
+  return blocks;
+}
+
+/// Kernel of the chosen frames; its upper triangle is not filled.
+Eigen::MatrixXd covariance(const ContextGp& model, const std::vector<Eigen::Index>& rows, Context& context) {
+  const auto blocks = blocks_of(model, rows);
   Eigen::MatrixXd k(rows.size(), rows.size());
   for (std::size_t j = 0; j < blocks.size(); ++j) {
     context.check_cancelled();
-    const Eigen::MatrixXd b = model.frames.middleRows(blocks[j].start, blocks[j].length);
+    const Block& b = blocks[j];
     for (std::size_t i = j; i < blocks.size(); ++i) {
-      const Eigen::MatrixXd a = model.frames.middleRows(blocks[i].start, blocks[i].length);
-      k.block(blocks[i].at, blocks[j].at, static_cast<Eigen::Index>(blocks[i].local.size()),
-              static_cast<Eigen::Index>(blocks[j].local.size())) =
-          kernel(model.window, a, b)(blocks[i].local, blocks[j].local);
+      const Block& a = blocks[i];
+      k.block(a.at, b.at, a.size(), b.size()) = kernel(model.window, a.frames, b.frames)(a.local, b.local);
     }
     context.progress(0.5 * static_cast<double>(j + 1) / static_cast<double>(blocks.size()));
   }
