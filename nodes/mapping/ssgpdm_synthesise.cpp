@@ -54,7 +54,7 @@ class SegmentSearch {
     optimiser_.step_tolerance = optimiser_.cost_tolerance = 1e-3;
   }
 
-  Eigen::MatrixXd latents() {
+  SegmentLatents latents() {
     const bool moves = node_.dynamics && state_.dynamics && x_.rows() > 1;
     switch (node_.method) {
       case LatentSearch::initial:
@@ -66,7 +66,7 @@ class SegmentSearch {
         moves ? predict() : points();
         break;
     }
-    return x_;
+    return {std::move(x_), evaluated_, converged_};
   }
 
  private:
@@ -92,7 +92,9 @@ class SegmentSearch {
     SequenceObjective objective(state_, audio, with_dynamics);
     if (from == 0 && before_ && node_.smoothness > 0) objective.follow(*before_, node_.smoothness);
     Eigen::VectorXd p = x_.middleRows(from, count).reshaped();
-    optimiser_.minimise(objective, p);
+    const StopReason reason = optimiser_.minimise(objective, p).reason;
+    evaluated_ = evaluated_ && reason != StopReason::failed;
+    converged_ = converged_ && evaluated_ && reason != StopReason::iterations;
     x_.middleRows(from, count) = p.reshaped(count, x_.cols());
   }
   void points() {
@@ -113,6 +115,7 @@ class SegmentSearch {
   const Eigen::MatrixXd& audio_;
   const Boundary& before_;
   Eigen::MatrixXd x_;
+  bool evaluated_ = true, converged_ = true;
   ScaledConjugateGradients optimiser_;
 };
 
@@ -126,8 +129,8 @@ Track track_like(const Track& audio, Eigen::Index frames, Eigen::Index dims) {
 
 }  // namespace
 
-Eigen::MatrixXd segment_latents(const SynthesiseSsgpdm& search, const Sgpdm& state, const Eigen::MatrixXd& audio,
-                                const Boundary& before) {
+SegmentLatents segment_latents(const SynthesiseSsgpdm& search, const Sgpdm& state, const Eigen::MatrixXd& audio,
+                               const Boundary& before) {
   return SegmentSearch(search, state, audio, before).latents();
 }
 
@@ -142,6 +145,7 @@ SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Tr
   out.states.frames = frames;
   out.states.rate = segments.rate;
   Predictive visual;
+  std::size_t converged = 0;
   for (const auto& segment : segments.segments) {
     const Eigen::Index length = std::min<Eigen::Index>(segment.length, frames - segment.start);
     if (length < 1) break;
@@ -151,14 +155,23 @@ SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Tr
     Boundary before;
     if (segment.start > 0) before = scaled(state.visual, out.visual.values.row(segment.start - 1));
     const Eigen::MatrixXd scaled_audio = scaled(state.audio, heard);
-    const Eigen::MatrixXd x = segment_latents(*this, state, scaled_audio, before);
-    out.latents.values.block(segment.start, 0, length, x.cols()) = x;
+    const SegmentLatents found = segment_latents(*this, state, scaled_audio, before);
+    visual.compute(state.visual, found.points);
+    if (!found.evaluated || !visual.mean().allFinite())
+      throw std::runtime_error(
+          fmt::format("segment \"{}\" from frame {} on: state \"{}\" has no finite likelihood there: its model holds "
+                      "values that are not finite, or the sound is far from all that it was trained on",
+                      segment.label, segment.start, state.label));
+    converged += found.converged;
+    out.latents.values.block(segment.start, 0, length, found.points.cols()) = found.points;
     out.states.segments.push_back({state.label, segment.start, length});
-    visual.compute(state.visual, x);
     out.visual.values.middleRows(segment.start, length) = unscaled(state.visual, visual.mean());
     out.deviation.values.middleRows(segment.start, length) = visual.variance().cwiseSqrt() * state.visual.scale;
     context.progress(static_cast<double>(segment.start + length) / static_cast<double>(frames));
   }
+  if (method != LatentSearch::initial)
+    context.log(fmt::format("{} of {} segments converged within {} iterations", converged, out.states.segments.size(),
+                            iterations));
   return out;
 }
 

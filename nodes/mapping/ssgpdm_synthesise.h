@@ -39,7 +39,8 @@ inline constexpr EnumNames<LatentInitial, 4> enum_names<LatentInitial>{
 /// Audio and segments that differ by at most 2 frames are used on their common
 /// beginning. Throws std::runtime_error if they differ by more, if segments leave
 /// gaps or overlap, on another audio dimension than the model's, on values that are
-/// not finite, or if a state lacks the back-constraint to start from. No frames give no frames.
+/// not finite, if a state lacks the back-constraint to start from, or where the likelihood of a segment is not finite.
+/// No frames give no frames.
 struct SynthesiseSsgpdm {
   struct Out {
     Track visual;         ///< T × D_Z, rate and start of the audio
@@ -58,9 +59,15 @@ struct SynthesiseSsgpdm {
 };
 void describe(Description<SynthesiseSsgpdm>& d);
 
-/// The latent points that a search finds for one segment (T × d). `audio` is T × D_Y, scaled as
-/// the state's; `before` the last visual frame before the segment, scaled likewise, if there is one.
-Eigen::MatrixXd segment_latents(const SynthesiseSsgpdm& search, const Sgpdm& state, const Eigen::MatrixXd& audio,
-                                const std::optional<Eigen::RowVectorXd>& before);
+/// What a search finds for one segment.
+struct SegmentLatents {
+  Eigen::MatrixXd points;  ///< T × d
+  bool evaluated = true;   ///< their likelihood could be
+  bool converged = true;   ///< every optimisation ended before its limit
+};
+/// `audio` is T × D_Y, scaled as the state's; `before` the last visual frame before the segment, scaled likewise, if
+/// there is one.
+SegmentLatents segment_latents(const SynthesiseSsgpdm& search, const Sgpdm& state, const Eigen::MatrixXd& audio,
+                               const std::optional<Eigen::RowVectorXd>& before);
 
 }  // namespace talkgraph

@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "nodes/latent/compact.h"
 #include "nodes/latent/predictive.h"
@@ -274,7 +275,7 @@ TEST(Synthesis, SmoothnessReducesTheJumpAtABoundary) {
 double cost_of(LatentSearch method, const Sgpdm& state, const Eigen::MatrixXd& audio) {
   SynthesiseSsgpdm node;
   node.method = method;
-  const Eigen::VectorXd points = segment_latents(node, state, audio, {}).reshaped();
+  const Eigen::VectorXd points = segment_latents(node, state, audio, {}).points.reshaped();
   SequenceObjective objective(state, audio, audio.rows() > 1);
   double cost = 0;
   EXPECT_TRUE(objective.evaluate(points, cost, nullptr));
@@ -317,6 +318,46 @@ TEST(Synthesis, RefusesWrongDimensionsGapsAndNan) {
   s.audio.values(2, 2) = NAN;
   EXPECT_THROW(SynthesiseSsgpdm{}(model(), s.audio, segments_of({{"b", 8}}), context), std::runtime_error);
   EXPECT_THROW(SynthesiseSsgpdm{}(Ssgpdm{}, s.audio, segments_of({{"b", 8}}), context), std::runtime_error);
+}
+
+std::string error_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Synthesis, OfAModelThatHoldsNanNamesStateAndSegment) {
+  Context context;
+  const auto s = speech(8);
+  const auto parts = segments_of({{"b", 4}, {"q-a", 4}});
+  for (const auto method : {LatentSearch::optimise, LatentSearch::initial})
+    for (const auto stream : {&Sgpdm::audio, &Sgpdm::visual}) {
+      Ssgpdm broken = model();
+      (broken.states.at("a").*stream).weights.setConstant(NAN);
+      SynthesiseSsgpdm node;
+      node.method = method;
+      const std::string error = error_of([&] { node(broken, s.audio, parts, context); });
+      const bool unseen = method == LatentSearch::initial && stream == &Sgpdm::audio;
+      EXPECT_EQ(error.find("segment \"q-a\" from frame 4 on: state \"a\"") == 0, !unseen) << error;
+    }
+}
+
+TEST(Synthesis, SaysHowManySegmentsConverged) {
+  const auto s = speech(8);
+  const auto logged = [&](int iterations) {
+    Context context;
+    std::string said;
+    context.on_log = [&](std::string_view message) { said = message; };
+    SynthesiseSsgpdm node;
+    node.iterations = iterations;
+    node(model(), s.audio, segments_of({{"b", 4}, {"b-a", 4}}), context);
+    return said;
+  };
+  EXPECT_EQ(logged(1), "0 of 2 segments converged within 1 iterations");
+  EXPECT_EQ(logged(1000), "2 of 2 segments converged within 1000 iterations");
 }
 
 TEST(Ssgpdm, SynthesisesTheSameAfterSavingAndLoading) {
