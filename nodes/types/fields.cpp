@@ -10,6 +10,7 @@
 #include "nodes/types/report.h"
 #include "nodes/types/segments.h"
 #include "nodes/types/shape.h"
+#include "nodes/types/stored_model.h"
 #include "nodes/types/track.h"
 
 namespace talkgraph {
@@ -19,6 +20,31 @@ namespace {
 void note_frames(Archive& ar, std::string_view member, Rational rate, double start) {
   ar.note(member, "rate_hz", rate.value());
   ar.note(member, "start_s", start);
+}
+
+void check(const Hmm& h) {
+  const StoredModel stored("hidden Markov model");
+  const Eigen::Index k = h.states();
+  stored.matrix("start", h.start, k, 1);
+  stored.weights("start", h.start);
+  stored.matrix("transitions", h.transitions, k, k);
+  stored.weights("transitions", h.transitions);
+  stored.require(std::ssize(h.observations) == k, "observations", "are not one a state");
+  for (const auto& mixture : h.observations) stored.mixture("observations", mixture, h.observations[0].dimension());
+}
+
+void check(const Lds& l) {
+  const StoredModel stored("linear dynamical system");
+  const Eigen::Index d = l.states();
+  stored.require(d > 0, "prediction", "is empty");
+  stored.matrix("first_mean", l.first_mean, d, 1);
+  stored.matrix("first_covariance", l.first_covariance, d, d);
+  stored.matrix("prediction", l.prediction, d, d);
+  stored.matrix("offset", l.offset, d, 1);
+  stored.matrix("prediction_noise", l.prediction_noise, d, d);
+  stored.matrix("mean", l.mean, 1, l.dimension());
+  stored.matrix("observation", l.observation, l.dimension(), d);
+  stored.covariance("observation_noise", l.observation_noise, l.dimension());
 }
 
 /// Loaded sound and pictures, as a recording gives them.
@@ -134,6 +160,7 @@ void fields(Archive& ar, GaussianMixture& m) {
 void fields(Archive& ar, Gmm& g) {
   ar("mixture", g.mixture);
   ar("trace", g.trace);
+  if (ar.loading()) StoredModel("Gaussian mixture").mixture("mixture", g.mixture, g.mixture.dimension());
 }
 
 void fields(Archive& ar, Hmm& h) {
@@ -141,6 +168,7 @@ void fields(Archive& ar, Hmm& h) {
   ar("transitions", h.transitions);
   ar("observations", h.observations);
   ar("trace", h.trace);
+  if (ar.loading()) check(h);
 }
 
 void fields(Archive& ar, Lds& l) {
@@ -153,6 +181,7 @@ void fields(Archive& ar, Lds& l) {
   ar("observation", l.observation);
   ar("observation_noise", l.observation_noise);
   ar("trace", l.trace);
+  if (ar.loading()) check(l);
 }
 
 void fields(Archive& ar, StateData& s) {

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "nodes/types/stored_model.h"
+
 namespace talkgraph {
 
 namespace {
@@ -46,6 +48,11 @@ void fields(Archive& ar, Ppca& p) {
   ar("mean", p.mean);
   ar("loadings", p.loadings);
   ar("noise", p.noise);
+  if (!ar.loading()) return;
+  const StoredModel stored("principal components");
+  stored.matrix("mean", p.mean, 1, p.mean.size());
+  stored.matrix("loadings", p.loadings, p.mean.size(), p.loadings.cols());
+  stored.positive("noise", p.noise);
 }
 
 }  // namespace talkgraph

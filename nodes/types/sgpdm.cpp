@@ -1,11 +1,14 @@
 #include "nodes/types/sgpdm.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "nodes/types/gpdm.h"
 #include "nodes/types/pile.h"
 #include "nodes/types/ssgpdm.h"
+#include "nodes/types/stored_model.h"
 
 namespace talkgraph {
 
@@ -157,6 +160,65 @@ void fields(Archive& ar, BackConstraint& b) {
   ar("bias", b.bias);
 }
 
+namespace {
+
+void check_back_constraint(const StoredModel& stored, const BackConstraint& b, Eigen::Index inputs, Eigen::Index d) {
+  const std::string name = "back_constraint";
+  if (const auto* hidden = std::get_if<HiddenUnits>(&b.units)) {
+    stored.matrix(name + ".hidden.weights", hidden->weights, inputs, b.weights.rows());
+    stored.matrix(name + ".hidden.bias", hidden->bias, 1, b.weights.rows());
+  } else {
+    const auto& rbf = std::get<RbfUnits>(b.units);
+    stored.matrix(name + ".rbf.centres", rbf.centres, b.weights.rows(), inputs);
+    stored.matrix(name + ".rbf.inverse_widths", rbf.inverse_widths, 1, inputs);
+  }
+  stored.matrix(name + ".weights", b.weights, b.weights.rows(), d);
+  stored.matrix(name + ".bias", b.bias, 1, d);
+}
+
+/// What models of one and of two streams have in common; the back-constraint is of the stream that `first` makes.
+template <class Model>
+void check_latents(const StoredModel& stored, const Model& m, const GaussianProcess& first) {
+  const Eigen::Index n = m.latents.rows(), d = m.latents.cols();
+  stored.matrix("latents", m.latents, n, d);
+  stored.require(n > 0 && d > 0, "latents", "is empty");
+  const bool some = std::all_of(m.lengths.begin(), m.lengths.end(), [&](auto l) { return l > 0 && l <= n; });
+  stored.require(some && std::accumulate(m.lengths.begin(), m.lengths.end(), std::int64_t{0}) == n, "lengths",
+                 "do not sum to the number of latent points");
+  if (m.dynamics) stored.process("dynamics", *m.dynamics, d, d);
+  stored.require(m.form == DynamicsForm::absolute || m.form == DynamicsForm::difference, "form", "is unknown");
+  if (m.back_constraint) check_back_constraint(stored, *m.back_constraint, first.mean.size(), d);
+  stored.not_negative("dynamics_bias", m.dynamics_bias);
+  stored.positive("first_variance", m.first_variance);
+}
+
+void check(const Sgpdm& s) {
+  const StoredModel stored("state \"" + s.label + "\"");
+  check_latents(stored, s, s.audio);
+  stored.matrix("audio_frames", s.audio_frames, s.latents.rows(), s.audio.mean.size());
+  stored.process("audio", s.audio, s.latents.cols(), s.audio.mean.size());
+  stored.process("visual", s.visual, s.latents.cols(), s.visual.mean.size());
+}
+
+void check(const Gpdm& g) {
+  const StoredModel stored("GPDM");
+  check_latents(stored, g, g.observations);
+  stored.process("observations", g.observations, g.latents.cols(), g.observations.mean.size());
+}
+
+void check(const Ssgpdm& s) {
+  for (const auto& [phone, label] : s.ending)
+    StoredModel("switching model").require(s.states.contains(label), "ending_labels", "names no state: " + label);
+  for (const auto& [label, state] : s.states) {
+    const StoredModel stored("state \"" + label + "\"");
+    const Sgpdm& first = s.states.begin()->second;
+    stored.matrix("audio.mean", state.audio.mean, 1, first.audio.mean.size());
+    stored.matrix("visual.mean", state.visual.mean, 1, first.visual.mean.size());
+  }
+}
+
+}  // namespace
+
 void fields(Archive& ar, Sgpdm& s) {
   ar("label", s.label);
   ar("latents", s.latents);
@@ -175,6 +237,7 @@ void fields(Archive& ar, Sgpdm& s) {
   ar("jitter", s.jitter);
   ar("trace", s.trace);
   ar("ended", s.ended);
+  if (ar.loading()) check(s);
 }
 
 void fields(Archive& ar, Gpdm& g) {
@@ -192,6 +255,7 @@ void fields(Archive& ar, Gpdm& g) {
   ar("jitter", g.jitter);
   ar("trace", g.trace);
   ar("ended", g.ended);
+  if (ar.loading()) check(g);
 }
 
 void fields(Archive& ar, Ssgpdm& s) {
@@ -213,6 +277,7 @@ void fields(Archive& ar, Ssgpdm& s) {
   for (auto& l : loaded) s.states.emplace(l.label, std::move(l));
   s.ending.clear();
   for (std::size_t i = 0; i < phones.size() && i < labels.size(); ++i) s.ending[phones[i]] = labels[i];
+  check(s);
 }
 
 }  // namespace talkgraph

@@ -14,6 +14,7 @@
 #include "nodes/mapping/ssgpdm_synthesise.h"
 #include "nodes/mapping/start_values.h"
 #include "tests/nodes/latent/gaussian.h"
+#include "tests/nodes/types/changed_members.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph {
@@ -371,6 +372,27 @@ TEST(Ssgpdm, SynthesisesTheSameAfterSavingAndLoading) {
   const auto parts = segments_of({{"b", 4}, {"q-a", 4}});
   EXPECT_EQ(SynthesiseSsgpdm{}(saved, s.audio, parts, context).visual.values,
             SynthesiseSsgpdm{}(loaded, s.audio, parts, context).visual.values);
+}
+
+TEST(Ssgpdm, ThatIsDamagedIsRefusedOrAnswers) {
+  const auto s = speech(8);
+  const auto parts = segments_of({{"b", 4}, {"q-a", 4}});
+  const auto use = [&](const Ssgpdm& m) {
+    Context context;
+    return SynthesiseSsgpdm{}(m, s.audio, parts, context).visual.values;
+  };
+  EXPECT_GT(testing::refuses_or_answers<Ssgpdm>(model(), use), 100);
+}
+
+TEST(Ssgpdm, ThatIsDamagedSaysWhichMemberOfWhichState) {
+  testing::MemoryArchive archive;
+  Ssgpdm saved = model(), loaded;
+  fields(archive, saved);
+  auto& sizes = std::get<std::vector<std::int64_t>>(archive.members.at("states/visual.weights/sizes"));
+  std::swap(sizes[2], sizes[3]);
+  archive.loads = true;
+  const std::string error = error_of([&] { fields(archive, loaded); });
+  EXPECT_EQ(error.find("the stored state \"b\" is damaged: its \"visual.weights\" is 6 × "), 0u) << error;
 }
 
 #ifdef __SANITIZE_ADDRESS__
