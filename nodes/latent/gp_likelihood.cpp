@@ -15,11 +15,11 @@ void GpGradient::set_zero(Eigen::Index n, Eigen::Index k, Eigen::Index d, Eigen:
 
 void GpLikelihood::check(const Kernel& kernel, const ConstMatrix& x, const ConstMatrix& y) {
   require_dimension(kernel, x.cols());
-  if (x.rows() != y.rows() || x.rows() == 0)
+  if (x.rows() != y.rows() || x.size() == 0 || y.size() == 0)
     throw std::invalid_argument(
-        fmt::format("a Gaussian process of {} inputs and {} outputs: it needs at least one, "
-                    "and as many of both",
-                    x.rows(), y.rows()));
+        fmt::format("a Gaussian process of {} × {} inputs and {} × {} outputs: it needs at least one frame and one "
+                    "dimension, and as many frames of both",
+                    x.rows(), x.cols(), y.rows(), y.cols()));
 }
 
 void GpLikelihood::check_finite(double value, const GpGradient* gradient, const ConstMatrix& x, const ConstMatrix& u,

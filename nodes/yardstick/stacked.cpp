@@ -32,6 +32,9 @@ std::vector<Pair> pair_up(const Collected<Track>& audio, const Collected<Track>&
     pairs.push_back({a, v, std::min(a->frames(), v->frames())});
     if (a->dimension() != pairs[0].audio->dimension() || v->dimension() != pairs[0].visual->dimension())
       throw std::runtime_error(audio.key(i) + ": other dimensions than the tracks before");
+    if (a->dimension() == 0 || v->dimension() == 0)
+      throw std::runtime_error(audio.key(i) + ": " + std::to_string(a->dimension()) + " audio and " +
+                               std::to_string(v->dimension()) + " visual dimensions, nothing to learn");
   }
   return pairs;
 }

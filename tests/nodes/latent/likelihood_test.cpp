@@ -131,6 +131,8 @@ TEST(Likelihood, RefusesSizesThatDoNotFit) {
     const auto likelihood = approximation.make();
     EXPECT_THROW(likelihood->evaluate(observation, x, u, y.topRows(7), nullptr), std::invalid_argument);
     EXPECT_THROW(likelihood->evaluate(observation, x.topRows(0), u, y.topRows(0), nullptr), std::invalid_argument);
+    EXPECT_THROW(likelihood->evaluate(observation, x, u, y.leftCols(0), nullptr), std::invalid_argument);
+    EXPECT_THROW(likelihood->evaluate(observation, x.leftCols(0), u.leftCols(0), y, nullptr), std::invalid_argument);
     EXPECT_THROW(likelihood->evaluate(three, x, u, y, nullptr), std::invalid_argument);
     if (!likelihood->has_inducing()) continue;
     EXPECT_THROW(likelihood->evaluate(observation, x, u.topRows(0), y, nullptr), std::invalid_argument);
