@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "nodes/latent/normal.h"
@@ -54,7 +55,7 @@ Ppca fit_ppca(const Eigen::MatrixXd& y, Eigen::Index d) {
   const Eigen::Index dims = y.cols(), kept = std::min(d, dims);
   const Eigen::VectorXd variances = eigen.eigenvalues().reverse().cwiseMax(0);
   if (dims > kept) model.noise = variances.tail(dims - kept).mean();
-  model.noise = std::max(model.noise, 1e-8 * std::max(variances.mean(), 1e-300));
+  model.noise = std::max(model.noise, variance_floors(y, 1e-8).mean());
   Eigen::MatrixXd axes = eigen.eigenvectors().rowwise().reverse().leftCols(kept);
   fix_signs(axes);
   model.loadings.setZero(dims, d);
@@ -170,13 +171,17 @@ Eigen::VectorXd Pcca::log_likelihood(const Eigen::MatrixXd& y, const Eigen::Matr
 Ppca TrainPpca::operator()(const Collected<Track>& tracks, Context& context) const {
   const Sequences data = measured_runs(tracks);
   const Ppca model = fit_ppca(data.frames, latent_dimension);
+  const double log_likelihood = model.log_likelihood(data.frames).sum();
+  if (!std::isfinite(log_likelihood))
+    throw std::runtime_error(
+        fmt::format("PPCA: the log-likelihood is {}: are values of the features huge?", log_likelihood));
   context.log(fmt::format("PPCA of {} frames: log-likelihood {:.6g}, noise variance {:.4g}", data.frames.rows(),
                           model.log_likelihood(data.frames).sum(), model.noise));
   return model;
 }
 
 void describe(Description<TrainPpca>& d) {
-  d.type("latent.ppca").version(1).stored();
+  d.type("latent.ppca").version(2).stored();
   d.summary("trains probabilistic principal components on tracks");
   d.source("Thesis §4.2.1, Eqns 4.3-4.4; Tipping and Bishop 1999");
   d.input("tracks", "whose measured frames are learnt from").output("model", "mean, loadings and noise");

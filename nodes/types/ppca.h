@@ -13,7 +13,8 @@ namespace talkgraph {
 struct Ppca {
   Eigen::RowVectorXd mean;   ///< 1 × D
   Eigen::MatrixXd loadings;  ///< W, D × d
-  double noise = 0;          ///< σ²: mean of the variances left out, at least 1e-8 of the mean variance
+  double noise =
+      0;  ///< σ²: mean of the variances left out, at least 1e-8 of the mean variance (of 1 if nothing varies)
 
   /// E[x | y] = (WᵀW + σ²I)⁻¹Wᵀ(y − mean) of every row, N × d.
   Eigen::MatrixXd posterior_mean(const Eigen::MatrixXd& y) const;

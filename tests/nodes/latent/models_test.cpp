@@ -178,6 +178,27 @@ TEST(Ppca, IsLikelierThanItsNeighbours) {
   }
 }
 
+TEST(TrainPpca, SaysThatValuesAreHuge) {
+  Context context;
+  Track huge;
+  huge.values = 1e160 * gaussian(20, 3, 1);
+  try {
+    TrainPpca{}({{"a", huge}}, context);
+    FAIL();
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("huge"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Ppca, OfDataThatDoNotVaryExplainsOtherFrames) {
+  for (const double value : {0.0, 3.3})
+    for (const Eigen::Index n : {1, 5}) {
+      const Ppca model = fit_ppca(Eigen::MatrixXd::Constant(n, 3, value), 2);
+      EXPECT_TRUE(model.log_likelihood(gaussian(4, 3, 1)).allFinite());
+      EXPECT_TRUE(model.posterior_mean(gaussian(4, 3, 1)).isZero());
+    }
+}
+
 TEST(ProjectPpca, GivesPosteriorMeansOfATrack) {
   Context context;
   Track track{gaussian(30, 4, 1), Rational{30}, 0.5, {}, {3}};
