@@ -17,31 +17,33 @@ void require_finite(const Track& track, const std::string& subject) {
 }  // namespace
 
 Sequences measured_runs(const Collected<Track>& tracks) {
-  Sequences s;
+  Eigen::Index frames = 0, dimension = 0;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const Track& track = tracks[i];
     if (track.frames() == 0) continue;
-    if (s.frames.rows() > 0 && track.dimension() != s.frames.cols())
+    if (frames > 0 && track.dimension() != dimension)
       throw std::runtime_error(
           fmt::format("track \"{}\" has {} dimensions, those before it {}: train all on the same "
                       "features",
-                      tracks.key(i), track.dimension(), s.frames.cols()));
+                      tracks.key(i), track.dimension(), dimension));
     require_finite(track, "track \"" + tracks.key(i) + "\"");
+    dimension = track.dimension();
+    frames += track.frames() - std::ssize(track.lost);
+  }
+  if (frames == 0 || dimension == 0) throw std::runtime_error("the tracks have no measured frame to train on");
+  Sequences s{Eigen::MatrixXd(frames, dimension), {}};
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const Track& track = tracks[i];
     bool goes_on = false;
     for (Eigen::Index t = 0; t < track.frames(); ++t) {
       const bool lost = track.is_lost(t);
       if (!lost && goes_on) ++s.lengths.back();
       if (!lost && !goes_on) s.lengths.push_back(1);
+      if (!lost) s.frames.row(row++) = track.values.row(t);
       goes_on = !lost;
     }
-    const Eigen::Index had = s.frames.rows(), lost = static_cast<Eigen::Index>(track.lost.size());
-    s.frames.conservativeResize(had + track.frames() - lost, track.dimension());
-    Eigen::Index row = had;
-    for (Eigen::Index t = 0; t < track.frames(); ++t)
-      if (!track.is_lost(t)) s.frames.row(row++) = track.values.row(t);
   }
-  if (s.frames.rows() == 0 || s.frames.cols() == 0)
-    throw std::runtime_error("the tracks have no measured frame to train on");
   return s;
 }
 
