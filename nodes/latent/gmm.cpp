@@ -103,11 +103,16 @@ void describe(Description<TrainGmm>& d) {
 
 Track GmmResponsibilities::operator()(const Gmm& model, const Track& track) const {
   require_frames_of(track, model.mixture.dimension(), "the mixture");
-  return {responsibilities(model.mixture, track.values), track.rate, track.start, {}, track.lost};
+  Track out{Eigen::MatrixXd(track.frames(), model.mixture.components()), track.rate, track.start, {}, track.lost};
+  Eigen::MatrixXd frames = track.values;
+  for (const auto t : track.lost) frames.row(t) = model.mixture.means.row(0);
+  out.values = responsibilities(model.mixture, frames);
+  for (const auto t : track.lost) out.values.row(t) = model.mixture.weights.transpose();
+  return out;
 }
 
 void describe(Description<GmmResponsibilities>& d) {
-  d.type("latent.gmm_responsibilities").version(1);
+  d.type("latent.gmm_responsibilities").version(2);
   d.summary("probabilities that frames are of each component of a mixture");
   d.source("Thesis §4.2.2, Eqns 4.6-4.7, corrected: the denominator sums m_j");
   d.input("model", "trained on features of this kind").input("track", "of the features that the model was trained on");

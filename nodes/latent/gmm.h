@@ -40,7 +40,8 @@ struct TrainGmm {
 };
 void describe(Description<TrainGmm>& d);
 
-/// Which component each frame is of, as probabilities, T × M; lost frames stay marked.
+/// Which component each frame is of, as probabilities, T × M. Lost frames count as not observed, which leaves the
+/// weights, and stay marked.
 struct GmmResponsibilities {
   Track operator()(const Gmm& model, const Track& track) const;
 };

@@ -85,6 +85,7 @@ PredictGp::Prediction PredictGp::operator()(const GpRegression& model, const Tra
   Prediction p;
   p.track.rate = p.deviation.rate = audio.rate;
   p.track.start = p.deviation.start = audio.start;
+  p.track.lost = p.deviation.lost = audio.lost;
   p.track.values = unscaled(model.process, predictive.mean());
   p.deviation.values = predictive.variance().cwiseSqrt() * model.process.scale;
   return p;
@@ -109,7 +110,9 @@ void describe(Description<TrainGp>& d) {
 }
 
 void describe(Description<PredictGp>& d) {
-  d.type("latent.gp_predict").summary("predicts visual parameters and their deviation by a Gaussian process");
+  d.type("latent.gp_predict")
+      .version(2)
+      .summary("predicts visual parameters and their deviation by a Gaussian process");
   d.source("Thesis §4.2.5, Eqns 4.30, 4.31; the variance includes the noise");
   d.input("model", "of latent.gp").input("audio", "speech features at the video rate");
   d.output("track", &PredictGp::Prediction::track, "visual parameters")

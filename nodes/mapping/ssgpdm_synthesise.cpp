@@ -124,6 +124,8 @@ Track track_like(const Track& audio, Eigen::Index frames, Eigen::Index dims) {
   t.values.setZero(frames, dims);
   t.rate = audio.rate;
   t.start = audio.start;
+  t.lost = audio.lost;
+  std::erase_if(t.lost, [&](auto frame) { return frame >= frames; });
   return t;
 }
 
@@ -176,7 +178,7 @@ SynthesiseSsgpdm::Out SynthesiseSsgpdm::operator()(const Ssgpdm& model, const Tr
 }
 
 void describe(Description<SynthesiseSsgpdm>& d) {
-  d.type("mapping.ssgpdm_synthesise").version(3);
+  d.type("mapping.ssgpdm_synthesise").version(4);
   d.summary("visual features of new speech by a switching SGPDM").stored();
   d.source("Thesis §4.4, §5.3, Eqns 4.76-4.79, Algorithms 7 and 8, corrected as in docs/method.md §5");
   d.input("model", "the switching model")

@@ -166,9 +166,11 @@ TEST(TrainGmm, LearnsFromMeasuredFramesAndSaysWhereItCannot) {
   const Gmm model = train({{"a", track}}, random, context);
   EXPECT_LT(model.mixture.means.cwiseAbs().maxCoeff(), 10);
   EXPECT_NE(log.find("39 frames: log-likelihood"), std::string::npos) << log;
-  track.values.row(5).setZero();
+  track.values.row(5).setConstant(1e200);
   const Track given = GmmResponsibilities{}(model, track);
   EXPECT_TRUE(given.values.rowwise().sum().isOnes(1e-12));
+  EXPECT_EQ(given.values.row(5), model.mixture.weights.transpose()) << "not observed";
+  EXPECT_EQ(given.values.row(6), responsibilities(model.mixture, track.values.row(6)).row(0));
   EXPECT_EQ(given.lost, track.lost);
   EXPECT_EQ(GmmResponsibilities{}(model, track_of(Eigen::MatrixXd(0, 2))).frames(), 0);
   EXPECT_THROW(GmmResponsibilities{}(model, track_of(gaussian(3, 3, 1))), std::runtime_error);

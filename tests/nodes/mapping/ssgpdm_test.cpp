@@ -301,6 +301,15 @@ TEST(Synthesis, GivesTheSameTwice) {
             SynthesiseSsgpdm{}(model(), s.audio, segments, context).visual.values);
 }
 
+TEST(Synthesis, KeepsLostFramesMarked) {
+  auto s = speech(8);
+  Context context;
+  s.audio.lost = {2, 7};
+  const auto out = SynthesiseSsgpdm{}(model(), s.audio, segments_of({{"b", 7}}), context);
+  for (const Track* track : {&out.visual, &out.deviation, &out.latents})
+    EXPECT_EQ(track->lost, (std::vector<std::int64_t>{2}));
+}
+
 TEST(Synthesis, UsesTheCommonBeginningOfTwoFramesAndNoMore) {
   const auto s = speech(8);
   Context context;
