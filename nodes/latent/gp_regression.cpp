@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "nodes/latent/gp_objective.h"
@@ -42,7 +43,9 @@ Kernel kernel_of(const std::vector<KernelChoice>& terms, Eigen::Index d) {
 
 GpRegression TrainGp::operator()(const Collected<Track>& audio, const Collected<Track>& visual,
                                  Context& context) const {
-  if (kernel.empty()) throw std::runtime_error("a kernel of no terms: give at least one, and white for the noise");
+  if (std::all_of(kernel.begin(), kernel.end(), [](const auto& term) { return term.kind == KernelKind::white; }))
+    throw std::runtime_error(
+        "a kernel that ties no frames together: give it a term besides white, such as rbf, ard or linear");
   const StackedTraining training = stack_training(audio, visual, this->context);
   const double shrink = 1 / std::sqrt(static_cast<double>(training.audio.cols()));
   const Eigen::MatrixXd x = training.audio * shrink;

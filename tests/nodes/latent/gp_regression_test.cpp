@@ -161,6 +161,42 @@ TEST(GpRegression, AnswersDegenerateData) {
   }
 }
 
+TEST(GpRegression, RefusesStreamsWithoutDimensions) {
+  Context context;
+  const Collected<Track> some{{"0", track(gaussian(80, 2, 1))}}, none{{"0", track(Eigen::MatrixXd(80, 0))}};
+  for (const auto& [audio, visual] : {std::pair(some, none), std::pair(none, some)})
+    for (const int inducing : {20, 100}) {
+      TrainGp train;
+      train.inducing = inducing;
+      EXPECT_THROW(train(audio, visual, context), std::runtime_error);
+    }
+}
+
+TEST(GpRegression, RefusesAKernelOfNoiseAlone) {
+  Context context;
+  const Pairs pairs(2);
+  TrainGp train;
+  for (const auto& kernel : {std::vector<KernelChoice>{}, {{KernelKind::white, 0.5, 1, 1e-3}}}) {
+    train.kernel = kernel;
+    try {
+      train(pairs.audio, pairs.visual, context);
+      FAIL();
+    } catch (const std::runtime_error& e) {
+      EXPECT_NE(std::string(e.what()).find("term besides white"), std::string::npos) << e.what();
+    }
+  }
+}
+
+TEST(PredictGp, KeepsLostFramesMarked) {
+  Context context;
+  const Pairs pairs(2);
+  Track sound = pairs.audio[0];
+  sound.lost = {3, 4};
+  const auto given = PredictGp{}(TrainGp{}(pairs.audio, pairs.visual, context), sound);
+  EXPECT_EQ(given.track.lost, sound.lost);
+  EXPECT_EQ(given.deviation.lost, sound.lost);
+}
+
 TEST(GpRegression, RefusesWhatItCannotLearnFrom) {
   Context context;
   Pairs pairs(2);
