@@ -1,6 +1,7 @@
 #include "nodes/latent/linear_models.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -137,37 +138,6 @@ Pcca fit_pcca(const Eigen::MatrixXd& y, const Eigen::MatrixXd& z, Eigen::Index d
   return model;
 }
 
-Eigen::MatrixXd Pcca::posterior_mean(const Eigen::MatrixXd& y, const Eigen::MatrixXd& z) const {
-  const Eigen::VectorXd gain = correlations.array().sqrt() / (1 + correlations.array());
-  return ((y.rowwise() - mean_y) * directions_y + (z.rowwise() - mean_z) * directions_z) * gain.asDiagonal();
-}
-
-Eigen::MatrixXd Pcca::posterior_mean_of_y(const Eigen::MatrixXd& y) const {
-  return (y.rowwise() - mean_y) * directions_y * correlations.cwiseSqrt().asDiagonal();
-}
-
-Eigen::MatrixXd Pcca::posterior_mean_of_z(const Eigen::MatrixXd& z) const {
-  return (z.rowwise() - mean_z) * directions_z * correlations.cwiseSqrt().asDiagonal();
-}
-
-Eigen::VectorXd Pcca::posterior_variance() const { return (1 - correlations.array()) / (1 + correlations.array()); }
-
-Eigen::VectorXd Pcca::posterior_variance_of_one() const { return 1 - correlations.array(); }
-
-Eigen::VectorXd Pcca::log_likelihood(const Eigen::MatrixXd& y, const Eigen::MatrixXd& z) const {
-  const Eigen::Index dims_y = mean_y.size(), dims = dims_y + mean_z.size();
-  Eigen::MatrixXd joint(dims, dims), both(y.rows(), dims);
-  joint << covariance_y, loadings_y * loadings_z.transpose(), loadings_z * loadings_y.transpose(), covariance_z;
-  both << y.rowwise() - mean_y, z.rowwise() - mean_z;
-  const Eigen::LLT<Eigen::MatrixXd> root(joint);
-  if (root.info() != Eigen::Success)
-    throw std::runtime_error(fmt::format(
-        "PCCA: the {} × {} covariance of both streams is singular, as one determines the other (correlation {:.6g}): "
-        "raise shrinkage or train on more frames",
-        dims, dims, correlations.size() ? correlations(0) : 0));
-  return log_normal(root, both.transpose());
-}
-
 Ppca TrainPpca::operator()(const Collected<Track>& tracks, Context& context) const {
   const Sequences data = measured_runs(tracks);
   const Ppca model = fit_ppca(data.frames, latent_dimension);
@@ -176,7 +146,7 @@ Ppca TrainPpca::operator()(const Collected<Track>& tracks, Context& context) con
     throw std::runtime_error(
         fmt::format("PPCA: the log-likelihood is {}: are values of the features huge?", log_likelihood));
   context.log(fmt::format("PPCA of {} frames: log-likelihood {:.6g}, noise variance {:.4g}", data.frames.rows(),
-                          model.log_likelihood(data.frames).sum(), model.noise));
+                          log_likelihood, model.noise));
   return model;
 }
 
@@ -198,6 +168,96 @@ void describe(Description<ProjectPpca>& d) {
   d.summary("takes a track to the latent space of probabilistic principal components");
   d.source("Tipping and Bishop 1999");
   d.input("model", "trained on features of this kind").input("track", "of the features that the model was trained on");
+  d.output("latents", "posterior means, T × d");
+}
+
+Cca TrainCca::operator()(const Collected<Track>& audio, const Collected<Track>& visual, Context& context) const {
+  const PairedFrames frames = paired_frames(audio, visual);
+  Cca model = fit_cca(frames.audio, frames.visual, latent_dimension);
+  context.log(fmt::format("canonical correlations of {} frames: {:.4g}", frames.audio.rows(),
+                          fmt::join(model.correlations, ", ")));
+  return model;
+}
+
+void describe(Description<TrainCca>& d) {
+  d.type("latent.cca").version(1).stored();
+  d.summary("finds the directions of two streams that correlate most");
+  d.source("Thesis §4.2.6, Eqn 4.50, corrected as in docs/method.md §4; Hotelling 1936; Björck and Golub 1973");
+  d.input("audio", "of the training sequences").input("visual", "of the same sequences, frame by frame");
+  d.output("model", "means, directions and correlations");
+  d.param("latent_dimension", &TrainCca::latent_dimension)
+      .at_least(1)
+      .doc("directions beyond the smaller stream's rank are zero");
+}
+
+Track ProjectCca::operator()(const Cca& model, const Track& track) const {
+  const bool heard = stream == CanonicalStream::audio;
+  const auto& mean = heard ? model.mean_y : model.mean_z;
+  require_frames_of(track, mean.size(), "the canonical directions");
+  const Eigen::MatrixXd projections =
+      (track.values.rowwise() - mean) * (heard ? model.directions_y : model.directions_z);
+  return {projections, track.rate, track.start, {}, track.lost};
+}
+
+void describe(Description<ProjectCca>& d) {
+  d.type("latent.cca_project").version(1);
+  d.summary("takes a track along canonical directions of its stream");
+  d.source("Hotelling 1936");
+  d.input("model", "of latent.cca").input("track", "of the features of that stream");
+  d.output("projections", "T × d; over the training frames their squares sum to 1");
+  d.param("stream", &ProjectCca::stream).doc("which of the model's two the track is of");
+}
+
+Pcca TrainPcca::operator()(const Collected<Track>& audio, const Collected<Track>& visual, Context& context) const {
+  const PairedFrames frames = paired_frames(audio, visual);
+  Pcca model = fit_pcca(frames.audio, frames.visual, latent_dimension, shrinkage);
+  context.log(
+      fmt::format("PCCA of {} frames: correlations {:.4g}", frames.audio.rows(), fmt::join(model.correlations, ", ")));
+  return model;
+}
+
+void describe(Description<TrainPcca>& d) {
+  d.type("latent.pcca").version(1).stored();
+  d.summary("trains probabilistic canonical correlation analysis of two streams");
+  d.source("Thesis §4.3.1; Bach and Jordan 2005");
+  d.input("audio", "of the training sequences").input("visual", "of the same sequences, frame by frame");
+  d.output("model", "means, covariances, directions, loadings and correlations");
+  d.param("latent_dimension", &TrainPcca::latent_dimension)
+      .at_least(1)
+      .doc("loadings beyond the smaller stream's dimension are zero");
+  d.param("shrinkage", &TrainPcca::shrinkage)
+      .at_least(0)
+      .doc("of the covariances to a multiple of I, times dimensions / (dimensions + frames); 0: none");
+}
+
+Track ProjectPcca::operator()(const Pcca& model, const Track* audio, const Track* visual) const {
+  if (!audio && !visual) throw std::runtime_error("neither stream is there: wire audio, visual or both");
+  if (audio) require_frames_of(*audio, model.mean_y.size(), "the audio side of PCCA");
+  if (visual) require_frames_of(*visual, model.mean_z.size(), "the visual side of PCCA");
+  const Track& first = audio ? *audio : *visual;
+  const Eigen::Index frames = visual ? common_frames(first, *visual, "the track") : first.frames();
+  const auto there = [](const Track* track, Eigen::Index t) { return track && !track->is_lost(t); };
+  Track out{Eigen::MatrixXd::Zero(frames, model.correlations.size()), first.rate, first.start, {}, {}};
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    const bool heard = there(audio, t), seen = there(visual, t);
+    if (heard && seen)
+      out.values.row(t) = model.posterior_mean(audio->values.row(t), visual->values.row(t));
+    else if (heard)
+      out.values.row(t) = model.posterior_mean_of_y(audio->values.row(t));
+    else if (seen)
+      out.values.row(t) = model.posterior_mean_of_z(visual->values.row(t));
+    else
+      out.lost.push_back(t);
+  }
+  return out;
+}
+
+void describe(Description<ProjectPcca>& d) {
+  d.type("latent.pcca_project").version(1);
+  d.summary("takes one stream or both to the latent space of probabilistic canonical correlations");
+  d.source("Bach and Jordan 2005");
+  d.input("model", "of latent.pcca").input("audio", "of the features that the model was trained on");
+  d.input("visual", "likewise");
   d.output("latents", "posterior means, T × d");
 }
 

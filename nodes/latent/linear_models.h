@@ -4,6 +4,7 @@
 
 #include "graph/context.h"
 #include "graph/description.h"
+#include "nodes/types/canonical.h"
 #include "nodes/types/ppca.h"
 #include "nodes/types/track.h"
 
@@ -12,43 +13,55 @@ namespace talkgraph {
 /// The likeliest PPCA, in closed form. Directions without variance have zero loadings, so d may exceed the rank of Y.
 Ppca fit_ppca(const Eigen::MatrixXd& y, Eigen::Index d);
 
-/// Canonical correlation analysis (Hotelling 1936): pairs of directions w, v of greatest correlation wᵀYᵀZv with
-/// wᵀYᵀYw = vᵀZᵀZv = 1 of the centred streams (Eqn 4.50, which ends in ZᵀY).
-struct Cca {
-  Eigen::RowVectorXd mean_y, mean_z;
-  Eigen::MatrixXd directions_y, directions_z;  ///< D × d; zero beyond the smaller rank
-  Eigen::VectorXd correlations;                ///< falling, in [0, 1]
-};
 /// By singular values of orthonormal bases of both streams (Björck and Golub 1973): fewer frames than dimensions and
 /// constant columns are answered within the space in which the data vary. N × D_Y and N × D_Z; N ≥ 1.
 Cca fit_cca(const Eigen::MatrixXd& y, const Eigen::MatrixXd& z, Eigen::Index d);
 
-/// Probabilistic canonical correlation analysis (Bach and Jordan 2005):
-/// y = mean + W_Y x + ε_Y, z = mean + W_Z x + ε_Z, x ~ N(0, I), noise of covariance Σ − WWᵀ each; W = Σ U P^½ with the
-/// canonical directions U and correlations P.
-struct Pcca {
-  Eigen::RowVectorXd mean_y, mean_z;
-  Eigen::MatrixXd covariance_y, covariance_z;  ///< Σ, D × D, regularised
-  Eigen::MatrixXd directions_y, directions_z;  ///< U, D × d: unit variance of the (regularised) projections
-  Eigen::MatrixXd loadings_y, loadings_z;      ///< W, D × d
-  Eigen::VectorXd correlations;                ///< falling, in [0, 1]
-
-  /// E[x | y, z] of every row, N × d: per dimension √p / (1 + p) times the sum of both projections.
-  Eigen::MatrixXd posterior_mean(const Eigen::MatrixXd& y, const Eigen::MatrixXd& z) const;
-  /// E[x | y] and E[x | z]: √p times the projection.
-  Eigen::MatrixXd posterior_mean_of_y(const Eigen::MatrixXd& y) const;
-  Eigen::MatrixXd posterior_mean_of_z(const Eigen::MatrixXd& z) const;
-  /// Variances of x, which are independent: (1 − p) / (1 + p) given both streams, 1 − p given one.
-  Eigen::VectorXd posterior_variance() const;
-  Eigen::VectorXd posterior_variance_of_one() const;
-  /// ln p(y, z) of every row. Throws std::runtime_error if the streams determine each other (a correlation of 1).
-  Eigen::VectorXd log_likelihood(const Eigen::MatrixXd& y, const Eigen::MatrixXd& z) const;
-};
 /// In closed form. Each covariance Σ is taken as (1 − ρ)Σ + ρ·mean variance·I with
 /// ρ = D / (D + N) · `shrinkage`: exact for many frames, and finite for fewer
 /// frames than dimensions or constant columns. Dimensions beyond the smaller
 /// stream's have correlation and loadings zero. N × D_Y and N × D_Z; N ≥ 1.
 Pcca fit_pcca(const Eigen::MatrixXd& y, const Eigen::MatrixXd& z, Eigen::Index d, double shrinkage = 1);
+
+/// Canonical correlations of the frames that both streams of a sequence have. Throws std::runtime_error, naming the
+/// sequence, if there is no such frame, on different dimensions, on lengths that differ by more than two frames and on
+/// values that are not finite.
+struct TrainCca {
+  int latent_dimension = 2;
+
+  Cca operator()(const Collected<Track>& audio, const Collected<Track>& visual, Context& context) const;
+};
+void describe(Description<TrainCca>& d);
+
+enum class CanonicalStream { audio, visual };
+template <>
+inline constexpr EnumNames<CanonicalStream, 2> enum_names<CanonicalStream>{
+    {{CanonicalStream::audio, "audio"}, {CanonicalStream::visual, "visual"}}};
+
+/// A track of one stream along that stream's canonical directions, T × d; lost frames stay marked.
+struct ProjectCca {
+  CanonicalStream stream = CanonicalStream::audio;
+
+  Track operator()(const Cca& model, const Track& track) const;
+};
+void describe(Description<ProjectCca>& d);
+
+/// As TrainCca, with a density.
+struct TrainPcca {
+  int latent_dimension = 2;
+  double shrinkage = 1;
+
+  Pcca operator()(const Collected<Track>& audio, const Collected<Track>& visual, Context& context) const;
+};
+void describe(Description<TrainPcca>& d);
+
+/// Posterior means of latent points given one stream or both, T × d. In a frame that one stream has lost the other
+/// speaks alone; one that all have lost has the prior's mean, and is marked. Throws std::runtime_error on no stream, on
+/// other dimensions than the model's, on values that are not finite and on lengths that differ by more than two frames.
+struct ProjectPcca {
+  Track operator()(const Pcca& model, const Track* audio, const Track* visual) const;
+};
+void describe(Description<ProjectPcca>& d);
 
 /// Probabilistic principal components of the measured frames of all tracks. Throws std::runtime_error, naming the
 /// track, if none has a measured frame, on different dimensions and on values that are not finite.

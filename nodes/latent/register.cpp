@@ -19,6 +19,10 @@ void register_latent(Registry& registry) {
   registry.add<TrainSgpdm>();
   registry.add<TrainPpca>();
   registry.add<ProjectPpca>();
+  registry.add<TrainCca>();
+  registry.add<ProjectCca>();
+  registry.add<TrainPcca>();
+  registry.add<ProjectPcca>();
   registry.add<TrainGmm>();
   registry.add<GmmResponsibilities>();
   registry.add<TrainHmm>();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace talkgraph {
@@ -45,6 +46,32 @@ Sequences measured_runs(const Collected<Track>& tracks) {
     }
   }
   return s;
+}
+
+Eigen::Index common_frames(const Track& a, const Track& b, const std::string& subject) {
+  if (std::abs(a.frames() - b.frames()) > 2)
+    throw std::runtime_error(
+        fmt::format("{} has {} frames of one stream but {} of the other", subject, a.frames(), b.frames()));
+  return std::min(a.frames(), b.frames());
+}
+
+PairedFrames paired_frames(const Collected<Track>& audio, const Collected<Track>& visual) {
+  Collected<Track> heard, seen;
+  for (std::size_t i = 0; i < audio.size(); ++i) {
+    const Track* other = visual.find(audio.key(i));
+    if (!other) continue;
+    Track a = audio[i], v = *other;
+    const Eigen::Index frames = common_frames(a, v, "sequence \"" + audio.key(i) + "\"");
+    a.values.conservativeResize(frames, Eigen::NoChange);
+    v.values.conservativeResize(frames, Eigen::NoChange);
+    std::vector<std::int64_t> lost;
+    for (Eigen::Index t = 0; t < frames; ++t)
+      if (a.is_lost(t) || v.is_lost(t)) lost.push_back(t);
+    a.lost = v.lost = lost;
+    heard.add(audio.key(i), std::move(a));
+    seen.add(audio.key(i), std::move(v));
+  }
+  return {measured_runs(heard).frames, measured_runs(seen).frames};
 }
 
 Steps steps_of(const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lengths) {

@@ -128,6 +128,88 @@ TEST(Cca, AnswersDegenerateData) {
   EXPECT_THROW(fit_cca(y.topRows(3), z, 1), std::runtime_error);
 }
 
+TEST(Pcca, RefusesADensityOfStreamsThatDetermineEachOther) {
+  const auto y = gaussian(50, 4, 1);
+  for (const double shrinkage : {0, 1})
+    EXPECT_THROW(fit_pcca(y, y, 2, shrinkage).log_likelihood(y, y), std::runtime_error);
+}
+
+Track track_of(Eigen::MatrixXd values, std::vector<std::int64_t> lost = {}) {
+  Track track;
+  track.values = std::move(values);
+  track.lost = std::move(lost);
+  return track;
+}
+
+/// Two streams of one latent path.
+struct Streams {
+  Collected<Track> audio, visual;
+  Eigen::MatrixXd y, z;  ///< what is measured of both
+  Streams() {
+    const auto x = gaussian(60, 2, 1);
+    const Eigen::MatrixXd a = x * gaussian(2, 4, 2) + 0.3 * gaussian(60, 4, 4);
+    const Eigen::MatrixXd v = x * gaussian(2, 3, 3) + 0.3 * gaussian(60, 3, 5);
+    audio = {{"a", track_of(a.topRows(30), {2})}, {"b", track_of(a.bottomRows(30))}, {"c", track_of(a)}};
+    visual = {{"a", track_of(v.topRows(28), {5})}, {"b", track_of(v.bottomRows(30))}};
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index t = 0; t < 60; ++t)
+      if (t != 2 && t != 5 && t != 28 && t != 29) rows.push_back(t);
+    y = a(rows, Eigen::all);
+    z = v(rows, Eigen::all);
+  }
+};
+
+TEST(TrainCca, LearnsFromFramesThatBothStreamsHaveAndProjectsEach) {
+  Context context;
+  const Streams s;
+  const Cca model = TrainCca{}(s.audio, s.visual, context), expected = fit_cca(s.y, s.z, 2);
+  EXPECT_EQ(model.directions_y, expected.directions_y);
+  EXPECT_EQ(model.correlations, expected.correlations);
+  const Track heard = ProjectCca{CanonicalStream::audio}(model, track_of(s.y, {3}));
+  const Track seen = ProjectCca{CanonicalStream::visual}(model, track_of(s.z));
+  EXPECT_EQ(heard.lost, (std::vector<std::int64_t>{3}));
+  EXPECT_TRUE(
+      (heard.values.transpose() * seen.values).isApprox(Eigen::MatrixXd(model.correlations.asDiagonal()), 1e-9));
+  EXPECT_THROW(ProjectCca{CanonicalStream::visual}(model, track_of(s.y)), std::runtime_error);
+  EXPECT_EQ(ProjectCca{}(model, track_of(Eigen::MatrixXd(0, 4))).frames(), 0);
+}
+
+TEST(TrainPcca, LearnsFromFramesThatBothStreamsHave) {
+  Context context;
+  const Streams s;
+  const Pcca model = TrainPcca{}(s.audio, s.visual, context), expected = fit_pcca(s.y, s.z, 2);
+  EXPECT_EQ(model.loadings_y, expected.loadings_y);
+  EXPECT_EQ(model.covariance_z, expected.covariance_z);
+  EXPECT_THROW(TrainPcca{}(s.audio, {}, context), std::runtime_error);
+  EXPECT_THROW(TrainPcca{}({{"a", s.audio[2]}}, s.visual, context), std::runtime_error) << "60 and 28 frames";
+  Track broken = s.visual[1];
+  broken.values(4, 1) = NAN;
+  EXPECT_THROW(TrainPcca{}(s.audio, {{"b", broken}}, context), std::runtime_error);
+}
+
+TEST(ProjectPcca, GivesThePosteriorOfOneStreamOrOfBoth) {
+  const Streams s;
+  const Pcca model = fit_pcca(s.y, s.z, 2);
+  const Track heard = track_of(s.y, {1, 4}), seen = track_of(s.z.topRows(55), {3, 4});
+  const Track both = ProjectPcca{}(model, &heard, &seen), one = ProjectPcca{}(model, &heard, nullptr),
+              other = ProjectPcca{}(model, nullptr, &seen);
+  const Eigen::MatrixXd given_both = model.posterior_mean(s.y, s.z), given_y = model.posterior_mean_of_y(s.y),
+                        given_z = model.posterior_mean_of_z(s.z);
+  EXPECT_EQ(both.frames(), 55);
+  EXPECT_EQ(both.lost, (std::vector<std::int64_t>{4}));
+  EXPECT_TRUE(both.values.row(0).isApprox(given_both.row(0), 1e-12));
+  EXPECT_TRUE(both.values.row(1).isApprox(given_z.row(1), 1e-12));
+  EXPECT_TRUE(both.values.row(3).isApprox(given_y.row(3), 1e-12));
+  EXPECT_TRUE(both.values.row(4).isZero());
+  EXPECT_TRUE(one.values.row(9).isApprox(given_y.row(9), 1e-12));
+  EXPECT_EQ(one.lost, heard.lost);
+  EXPECT_TRUE(other.values.row(9).isApprox(given_z.row(9), 1e-12));
+  EXPECT_THROW(ProjectPcca{}(model, nullptr, nullptr), std::runtime_error);
+  EXPECT_THROW(ProjectPcca{}(model, &seen, nullptr), std::runtime_error);
+  const Track few = track_of(s.z.topRows(9));
+  EXPECT_THROW(ProjectPcca{}(model, &heard, &few), std::runtime_error);
+}
+
 TEST(Pcca, StaysFiniteOnDegenerateData) {
   for (const Eigen::Index n : {1, 2, 5}) {
     Eigen::MatrixXd y = gaussian(n, 8, 1), z = gaussian(n, 6, 2);
