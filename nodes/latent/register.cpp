@@ -3,6 +3,7 @@
 #include "nodes/latent/gmm.h"
 #include "nodes/latent/gp_regression.h"
 #include "nodes/latent/gpdm.h"
+#include "nodes/latent/gpdm_infer.h"
 #include "nodes/latent/hmm.h"
 #include "nodes/latent/lds.h"
 #include "nodes/latent/linear_models.h"
@@ -15,6 +16,7 @@ void register_latent(Registry& registry) {
   registry.add<TrainGp>();
   registry.add<PredictGp>();
   registry.add<TrainGpdm>();
+  registry.add<InferGpdm>();
   registry.add<TrainMrd>();
   registry.add<TrainSgpdm>();
   registry.add<TrainPpca>();
