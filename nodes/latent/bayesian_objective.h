@@ -33,7 +33,6 @@ class BayesianObjective : public Maximand {
   Eigen::Index place(std::size_t stream) const { return places_[stream]; }  ///< of its first parameter
   /// q(X), N × d.
   GaussianRows posterior(const Eigen::VectorXd& parameters) const;
-  double log_scale() const { return log_scale_; }
   double jitter() const;
 
  private:

@@ -191,15 +191,15 @@ Trained train_in_parts(const TrainMrd& node, BayesianObjective& objective, Conte
   training.batch = node.batch;
   training.epochs = node.epochs;
   training.noise_held = node.epochs * node.noise_held / std::max(1, node.noise_held + node.iterations);
-  Trained trained{{}, 0, node.epochs, "epochs", {}};
-  training.on_part = [&](int, double share, double bound) {
+  training.on_part = [&](double share) {
     context.check_cancelled();
     context.progress(share);
-    trained.trace.push_back(bound);
   };
-  trained.parameters = training(objective, random);
-  trained.bound = objective.value(trained.parameters, nullptr);
-  return trained;
+  StochasticTraining::Reached reached = training(objective, random);
+  const double bound = *std::max_element(reached.trace.begin(), reached.trace.end());
+  const auto taken = static_cast<int>(reached.trace.size()) - 1;
+  return {std::move(reached.parameters), bound, taken, reached.converged ? "converged" : "epoch limit",
+          std::move(reached.trace)};
 }
 
 Trained untrained(BayesianObjective& objective) {
@@ -292,8 +292,8 @@ void describe(Description<TrainMrd>& d) {
   d.param("epochs", &TrainMrd::epochs)
       .at_least(0)
       .doc(
-          "passes of stochastic training over all frames; of them a share noise_held / (noise_held + iterations) hold "
-          "the noise");
+          "most passes of stochastic training over all frames; it ends when ten gain less than 0.01 a frame, and holds "
+          "the noise in a share noise_held / (noise_held + iterations) of the most");
   d.param("time_width", &TrainMrd::time_width)
       .at_least(0)
       .doc("width in frames of a prior over time on each window's latent path; 0: none");

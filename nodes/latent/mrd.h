@@ -35,7 +35,8 @@ inline constexpr EnumNames<VisualOnly, 2> enum_names<VisualOnly>{
 /// outputs.
 ///
 /// All frames at once are optimised by scaled conjugate gradients; with `batch`, parts of them by stochastic steps
-/// (StochasticTraining), for thousands of frames. Either way time grows with N·inducing², memory with N.
+/// (StochasticTraining), for thousands of frames; the trace is of the bound after each epoch. Either way time grows
+/// with N·inducing², memory with N.
 ///
 /// Throws std::runtime_error if there are no frames, windows of unequal length or dimension, infinite values, a
 /// dimension that is missing throughout.

@@ -54,8 +54,7 @@ class Training {
     by_q_ = q_;
   }
 
-  /// Returns the bound as this part alone estimates it.
-  double step(const std::vector<std::size_t>& windows, int epoch) {
+  void step(const std::vector<std::size_t>& windows, int epoch) {
     const LatentPosterior& latents = objective_.latents();
     const std::vector<Eigen::Index> rows = rows_of(windows);
     const double all = static_cast<double>(objective_.rows()), scale = all / static_cast<double>(rows.size());
@@ -65,7 +64,7 @@ class Training {
     const Eigen::Index n = objective_.rows() * objective_.dimension();
     const Eigen::Map<const Eigen::MatrixXd> mean(parameters_.data(), objective_.rows(), objective_.dimension());
     const Eigen::Map<const Eigen::MatrixXd> precision(parameters_.data() + n, mean.rows(), mean.cols());
-    double bound = -scale * latents.compute(windows, mean, precision, q_.mean, q_.variance) - objective_.log_scale();
+    latents.compute(windows, mean, precision, q_.mean, q_.variance);
     by_q_.mean(rows, Eigen::all).setZero();
     by_q_.variance(rows, Eigen::all).setZero();
     std::vector<Eigen::VectorXd> gradients;
@@ -73,7 +72,7 @@ class Training {
       VariationalStream& s = objective_.streams()[i];
       s.begin(parameters_.segment(objective_.place(i), s.size()));
       gradients.emplace_back(s.size());
-      bound += s.stochastic(s.classes_of(rows), scale, natural_step, q_, by_q_, gradients.back());
+      s.stochastic(s.classes_of(rows), scale, natural_step, q_, by_q_, gradients.back());
     }
     by_q_.mean(rows, Eigen::all) /= scale;
     by_q_.variance(rows, Eigen::all) /= scale;
@@ -85,10 +84,9 @@ class Training {
                  rate_share * settings_.rate, parameters_);
     }
     move_latents(rows, epoch + 1, rate_share * settings_.latent_rate);
-    return bound;
   }
 
-  Eigen::VectorXd parameters_of_all() { return parameters_; }
+  const Eigen::VectorXd& parameters() const { return parameters_; }
 
  private:
   std::vector<Eigen::Index> rows_of(const std::vector<std::size_t>& windows) const {
@@ -119,17 +117,24 @@ class Training {
 
 }  // namespace
 
-Eigen::VectorXd StochasticTraining::operator()(BayesianObjective& objective, Random& random) const {
+StochasticTraining::Reached StochasticTraining::operator()(BayesianObjective& objective, Random& random) const {
   Training training(*this, objective);
-  for (int epoch = 0; epoch < epochs; ++epoch) {
+  Reached reached{training.parameters(), {objective.bound(training.parameters(), nullptr)}, false};
+  std::vector<double> best = reached.trace;
+  for (int epoch = 0; epoch < epochs && !reached.converged; ++epoch) {
     const auto parts = parts_of(objective.latents(), batch, random);
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const double bound = training.step(parts[i], epoch);
-      const double share = (epoch + static_cast<double>(i + 1) / static_cast<double>(parts.size())) / epochs;
-      if (on_part) on_part(epoch, share, bound);
+      training.step(parts[i], epoch);
+      if (on_part) on_part((epoch + static_cast<double>(i + 1) / static_cast<double>(parts.size())) / epochs);
     }
+    reached.trace.push_back(objective.bound(training.parameters(), nullptr));
+    if (reached.trace.back() > best.back()) reached.parameters = training.parameters();
+    best.push_back(std::max(best.back(), reached.trace.back()));
+    const auto before = std::ssize(best) - 1 - patience;
+    reached.converged = before >= std::max(1, noise_held) && best.back() - best[static_cast<std::size_t>(before)] <
+                                                                 tolerance * static_cast<double>(objective.rows());
   }
-  return training.parameters_of_all();
+  return reached;
 }
 
 }  // namespace talkgraph

@@ -17,11 +17,17 @@ struct StochasticTraining {
   int noise_held = 10;        ///< epochs before which noise stays where it is
   double rate = 0.01;         ///< Adam's step of the processes, falling to a tenth
   double latent_rate = 0.05;  ///< that of the latent points
-  std::function<void(int epoch, double share, double bound)> on_part;
+  double tolerance = 0.01;    ///< of what the bound gains in `patience` epochs, a frame; less is the end
+  int patience = 10;
+  std::function<void(double share)> on_part;
 
-  /// From objective.start(): the parameters reached. The bound given to on_part is an estimate from the part.
-  /// Throws FactorisationError.
-  Eigen::VectorXd operator()(BayesianObjective& objective, Random& random) const;
+  struct Reached {
+    Eigen::VectorXd parameters;  ///< those of the greatest bound
+    std::vector<double> trace;   ///< the bound of all frames at the start and after each epoch
+    bool converged = false;      ///< it gained less than the tolerance, with the noise let go
+  };
+  /// From objective.start(). Throws FactorisationError.
+  Reached operator()(BayesianObjective& objective, Random& random) const;
 };
 
 }  // namespace talkgraph

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -83,6 +84,27 @@ TEST(TrainMrd, FindsThemInPartsToo) {
   EXPECT_EQ(out.dimensions.cells[0][1], 1);
   EXPECT_EQ(out.dimensions.cells[0][2], 1);
   EXPECT_EQ(out.dimensions.cells[0][3], 1);
+}
+
+TEST(TrainMrd, InPartsTracesTheBoundOfAllFramesAndSaysWhyItEnded) {
+  const StateData data = shared_and_private(120, 100);
+  TrainMrd node;
+  node.iterations = 300;
+  const Sgpdm whole = trained(node, data).model;
+  node.batch = 40;
+  node.epochs = 5;
+  const Sgpdm few = trained(node, data).model;
+  EXPECT_EQ(few.trace.size(), 6u);
+  EXPECT_EQ(few.trace[0], whole.trace[0]);
+  EXPECT_EQ(few.ended, "epoch limit");
+  EXPECT_EQ(few.iterations, 5);
+  EXPECT_EQ(few.log_likelihood, *std::max_element(few.trace.begin(), few.trace.end()));
+  EXPECT_LT(few.log_likelihood, whole.log_likelihood - 500);
+  node.epochs = 3000;
+  const Sgpdm many = trained(node, data).model;
+  EXPECT_EQ(many.ended, "converged");
+  EXPECT_LT(many.iterations, 3000);
+  EXPECT_GT(many.log_likelihood, whole.log_likelihood - 300);
 }
 
 /// Mean squared error of the visual frames at their latent points where `at` holds, as a share of that of the mean.
