@@ -7,6 +7,7 @@
 #include "nodes/latent/hmm.h"
 #include "nodes/latent/lds.h"
 #include "nodes/latent/linear_models.h"
+#include "nodes/latent/log_likelihood.h"
 #include "nodes/latent/mrd.h"
 #include "nodes/latent/sgpdm.h"
 
@@ -31,6 +32,7 @@ void register_latent(Registry& registry) {
   registry.add<DecodeHmm>();
   registry.add<TrainLds>();
   registry.add<SmoothLds>();
+  registry.add<LogLikelihood>();
 }
 
 }  // namespace talkgraph
