@@ -6,9 +6,10 @@ void ExpectedRbf::begin(const Eigen::VectorXd& inverse_widths, const Eigen::Matr
                         const Eigen::VectorXd& offsets) {
   const Eigen::Index d = points.cols();
   widths_ = inverse_widths;
+  centre_ = points.colwise().mean();
   columns_.resize(points.rows(), 2 * d + 2);
-  columns_.leftCols(d) = points.array().square();
-  columns_.middleCols(d, d) = points;
+  columns_.middleCols(d, d) = points.rowwise() - centre_;
+  columns_.leftCols(d) = columns_.middleCols(d, d).array().square();
   columns_.col(2 * d).setOnes();
   columns_.col(2 * d + 1) = offsets;
   column_gradient_.setZero(points.rows(), 2 * d + 2);
@@ -21,8 +22,9 @@ const Eigen::MatrixXd& ExpectedRbf::compute(const ConstMatrix& mean, const Const
   weights_ = shrinkage_.rowwise() * widths_.transpose().array();
   rows_.resize(n, 2 * d + 2);
   rows_.leftCols(d) = -0.5 * weights_;
-  rows_.middleCols(d, d) = weights_ * mean.array();
-  rows_.col(2 * d) = 0.5 * (shrinkage_.log() - weights_ * mean.array().square()).rowwise().sum();
+  const auto m = mean.array().rowwise() - centre_.array();
+  rows_.middleCols(d, d) = weights_ * m;
+  rows_.col(2 * d) = 0.5 * (shrinkage_.log() - weights_ * m.square()).rowwise().sum();
   rows_.col(2 * d + 1).setOnes();
   value_.resize(n, columns_.rows());
   value_.noalias() = rows_ * columns_.transpose();
@@ -53,7 +55,7 @@ void ExpectedRbf::row_sum_gradient(const Eigen::VectorXd& g, const ConstMatrix& 
 void ExpectedRbf::chain(const ConstMatrix& mean, const ConstMatrix& variance, MatrixView mean_gradient,
                         MatrixView variance_gradient) {
   const Eigen::Index d = mean.cols();
-  const auto m = mean.array();
+  const auto m = mean.array().rowwise() - centre_.array();
   const auto squares = row_gradient_.leftCols(d).array(), points = row_gradient_.middleCols(d, d).array();
   const auto total = row_gradient_.col(2 * d).array().replicate(1, d);
   weight_gradient_ = m * points - 0.5 * (squares + m.square() * total);

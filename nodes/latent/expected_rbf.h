@@ -35,6 +35,7 @@ class ExpectedRbf {
              MatrixView variance_gradient);
 
   Eigen::VectorXd widths_, width_gradient_;
+  Eigen::RowVectorXd centre_;  // of the points; p and m are taken from there, so that squares do not drown differences
   Eigen::MatrixXd columns_, column_gradient_, weighted_columns_;  // P × (2d + 2): p², p, 1, offset
   Eigen::MatrixXd rows_, row_gradient_;                           // n × (2d + 2): −w/2, w·m, the rest, 1
   Eigen::MatrixXd value_, weighted_, products_;

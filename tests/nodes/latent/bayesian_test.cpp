@@ -122,6 +122,26 @@ TEST(PsiStatistics, GradientsAgreeWithDifferences) {
   }
 }
 
+TEST(PsiStatistics, KeepTheirDigitsFarFromTheOrigin) {
+  const Eigen::Index n = 12, m = 6, d = 3;
+  const auto gradients_at = [&](double shift) {
+    const Eigen::MatrixXd mean = 0.2 * gaussian(n, d, 1).array() + shift, u = 0.2 * gaussian(m, d, 2).array() + shift;
+    const Eigen::MatrixXd variance = 0.01 * gaussian(n, d, 3).cwiseAbs2(), g2 = gaussian(m, m, 5);
+    PsiStatistics psi;
+    psi.begin({1, 0.1, Eigen::Vector3d(35, 60, 95)}, u);
+    psi.first(mean, variance);
+    Eigen::MatrixXd two = Eigen::MatrixXd::Zero(m, m), by_mean = Eigen::MatrixXd::Zero(n, d), by_variance = by_mean;
+    psi.add_second(mean, variance, two);
+    psi.gradient(gaussian(n, m, 4), g2 + g2.transpose(), mean, variance, by_mean, by_variance);
+    Eigen::VectorXd all(2 * n * d + m * d + d);
+    all << by_mean.reshaped(), by_variance.reshaped(), psi.inducing_gradient().reshaped(),
+        psi.kernel_gradient().inverse_widths;
+    return all;
+  };
+  const Eigen::VectorXd near = gradients_at(0), far = gradients_at(32);
+  EXPECT_LT((far - near).cwiseAbs().maxCoeff(), 1e-9 * near.cwiseAbs().maxCoeff());
+}
+
 VariationalProcess process_of(Eigen::Index inducing, Eigen::Index d, std::uint64_t seed) {
   VariationalProcess process;
   process.kernel.variance = 1.2;
