@@ -263,7 +263,7 @@ Plot PlotLatent::operator()(const Value& model, const Collected<FrameLabels>& la
 }
 
 void describe(Description<PlotLatent>& d) {
-  d.type("plot.latent").version(1).summary("latent points of a model, coloured by what is said, before its precision");
+  d.type("plot.latent").version(2).summary("latent points of a model, coloured by what is said, before its precision");
   d.source("Thesis §4.2.5 and §4.3.4, Figures 4.6 and 4.10");
   d.input("model", "an Ssgpdm, of which one state is shown, an Sgpdm or a Gpdm")
       .input("labels",
@@ -271,7 +271,7 @@ void describe(Description<PlotLatent>& d) {
       .input("paths", "synthesised latent points, drawn over them: latents of mapping.ssgpdm_synthesise, or {}")
       .input("states", "whose segments the paths are: states of mapping.ssgpdm_synthesise, or {}")
       .output("plot", "one panel");
-  d.param("state", &PlotLatent::state).doc("label of the state; empty: the one with most frames");
+  d.param("state", &PlotLatent::state).doc("label of the state; empty: the one with most frames, if possible of several phones");
   d.param("process", &PlotLatent::process)
       .doc("whose precision is the background: audio, visual, observations or dynamics; empty: the last one observed");
   d.param("dimensions", &PlotLatent::dimensions).at_least(1).doc("two, from 1; empty: the most relevant two");

@@ -15,7 +15,7 @@ namespace talkgraph {
 /// A model of one dimension is drawn over the frames of its windows. Throws std::invalid_argument on an unknown state
 /// or process and on dimensions that the model has not, std::runtime_error if labels or paths do not fit the model.
 struct PlotLatent {
-  std::string state;            ///< label; empty: the one with most frames
+  std::string state;            ///< label; empty: the one with most frames, if possible of several phones
   std::string process;          ///< whose precision is shown; empty: the face's, or the only one observed
   std::vector<int> dimensions;  ///< two, from 1; empty: the most relevant
   int resolution = 80;          ///< places of the background along the picture

@@ -92,15 +92,20 @@ std::vector<LatentSpace> latent_spaces(const Value& model) {
 
 LatentSpace latent_space(const Value& model, const std::string& state) {
   const auto spaces = latent_spaces(model);
-  const auto frames = [](const LatentSpace& a, const LatentSpace& b) { return a.latents->rows() < b.latents->rows(); };
-  if (state.empty()) return *std::max_element(spaces.begin(), spaces.end(), frames);
+  const auto weight = [](const LatentSpace& s) {
+    return std::pair(s.label.find('-') != std::string::npos, s.latents->rows());
+  };
+  if (state.empty())
+    return *std::max_element(spaces.begin(), spaces.end(),
+                             [&](const auto& a, const auto& b) { return weight(a) < weight(b); });
   std::vector<std::string> labels;
   for (const auto& s : spaces) {
     if (s.label == state) return s;
     labels.push_back(s.label);
   }
-  throw std::invalid_argument(fmt::format("there is no state \"{}\" among the model's {}{}", state, spaces.size(),
-                                          did_you_mean(state, labels)));
+  throw std::invalid_argument(
+      fmt::format("there is no state \"{}\" among the model's {}{}; without `state` the one with most frames is shown",
+                  state, spaces.size(), did_you_mean(state, labels)));
 }
 
 std::string heading_of(const LatentSpace& space) {

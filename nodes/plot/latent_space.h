@@ -31,7 +31,8 @@ struct LatentSpace {
 /// Of each state of an Ssgpdm in the order of labels; one of an Sgpdm or a Gpdm. Throws std::runtime_error on a model
 /// of another type or without states, points or dimensions.
 std::vector<LatentSpace> latent_spaces(const Value& model);
-/// That of the state with this label; of the one with most frames if it is empty. Throws std::invalid_argument, which
+/// That of the state with this label; if it is empty, of the one with most frames among those of several phones, or
+/// else among all. Throws std::invalid_argument, which
 /// names the nearest label, if there is no such state.
 LatentSpace latent_space(const Value& model, const std::string& state);
 

@@ -191,7 +191,7 @@ Artifact LatentPage::operator()(const Value& model, const Collected<FrameLabels>
 }
 
 void describe(Description<LatentPage>& d) {
-  d.type("report.latent").version(1).sink();
+  d.type("report.latent").version(2).sink();
   d.summary("writes a page to turn and zoom a model's latent space in, in three dimensions");
   d.source("Thesis §5.2.3, Figures 5.9 to 5.12");
   d.input("model", "an Ssgpdm, of which one state is shown, an Sgpdm or a Gpdm")
@@ -200,7 +200,7 @@ void describe(Description<LatentPage>& d) {
       .input("paths", "synthesised latent points, drawn as well: latents of mapping.ssgpdm_synthesise, or {}")
       .input("states", "whose segments the paths are: states of mapping.ssgpdm_synthesise, or {}")
       .output("file", "the page");
-  d.param("state", &LatentPage::state).doc("label of the state; empty: the one with most frames");
+  d.param("state", &LatentPage::state).doc("label of the state; empty: the one with most frames, if possible of several phones");
   d.param("process", &LatentPage::process)
       .doc("whose precision is the cloud: audio, visual, observations or dynamics; empty: the last one observed");
   d.param("dimensions", &LatentPage::dimensions).at_least(1).doc("three, from 1; empty: the most relevant three");

@@ -12,7 +12,7 @@ namespace talkgraph {
 /// Inputs and errors are those of plot.latent; a model of fewer than three dimensions is drawn over the frames of its
 /// windows. A file that cannot be written is an error as well.
 struct LatentPage {
-  std::string state;            ///< label; empty: the one with most frames
+  std::string state;            ///< label; empty: the one with most frames, if possible of several phones
   std::string process;          ///< whose precision is the cloud; empty: the face's, or the only one observed
   std::vector<int> dimensions;  ///< three, from 1; empty: the most relevant
   int resolution = 22;          ///< places of the cloud along each axis

@@ -71,9 +71,11 @@ TEST(Contours, DecideSaddlesByTheirMean) {
 TEST(LatentSpace, IsThatOfTheStateAskedFor) {
   const Value model =
       Value::of(test::switching({bent_state("k-ae-t", 4, 3), bent_state("t", 5, 3), bent_state("s", 2, 3)}));
-  EXPECT_EQ(latent_space(model, "").label, "t") << "it has most frames";
+  EXPECT_EQ(latent_space(model, "").label, "k-ae-t") << "\"t\" has most frames, but may be a pause";
+  EXPECT_EQ(latent_space(Value::of(test::switching({bent_state("t", 5, 3), bent_state("s", 2, 3)})), "").label, "t");
   EXPECT_EQ(latent_space(model, "s").latents->rows(), 6);
   EXPECT_THAT(complaint([&] { latent_space(model, "k-ae-d"); }), HasSubstr("did you mean \"k-ae-t\"?"));
+  EXPECT_THAT(complaint([&] { latent_space(model, "dh-ah-ah"); }), HasSubstr("without `state`"));
   EXPECT_THAT(complaint([] { latent_spaces(Value::of(Ssgpdm{})); }), HasSubstr("no states"));
   EXPECT_THAT(complaint([] { latent_spaces(Value::of(Track{})); }), HasSubstr("Track has no latent space"));
   EXPECT_THAT(complaint([] { latent_spaces(Value::of(Sgpdm{})); }), HasSubstr("0 latent points"));
