@@ -271,7 +271,7 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
 }
 
 void describe(Description<TrainMrd>& d) {
-  d.type("latent.mrd").version(3).stored();
+  d.type("latent.mrd").version(4).stored();
   d.summary("trains a state's shared latent model, finding its dimension and what each stream needs of it");
   d.source("Titsias & Lawrence 2010; Damianou, Titsias & Lawrence 2011; Damianou, Ek, Titsias & Lawrence 2012");
   d.input("windows", "training windows of one state, NaN where a value is missing");

@@ -119,7 +119,7 @@ class Training {
 
 StochasticTraining::Reached StochasticTraining::operator()(BayesianObjective& objective, Random& random) const {
   Training training(*this, objective);
-  Reached reached{training.parameters(), {objective.bound(training.parameters(), nullptr)}, false};
+  Reached reached{training.parameters(), {objective.value(training.parameters(), nullptr)}, false};
   std::vector<double> best = reached.trace;
   for (int epoch = 0; epoch < epochs && !reached.converged; ++epoch) {
     const auto parts = parts_of(objective.latents(), batch, random);
@@ -127,7 +127,7 @@ StochasticTraining::Reached StochasticTraining::operator()(BayesianObjective& ob
       training.step(parts[i], epoch);
       if (on_part) on_part((epoch + static_cast<double>(i + 1) / static_cast<double>(parts.size())) / epochs);
     }
-    reached.trace.push_back(objective.bound(training.parameters(), nullptr));
+    reached.trace.push_back(objective.value(training.parameters(), nullptr));
     if (reached.trace.back() > best.back()) reached.parameters = training.parameters();
     best.push_back(std::max(best.back(), reached.trace.back()));
     const auto before = std::ssize(best) - 1 - patience;
