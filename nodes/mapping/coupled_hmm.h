@@ -15,8 +15,8 @@ namespace talkgraph {
 /// pair, if lengths differ by more than two frames, on different dimensions, on values that are not finite, and if no
 /// visual frame is measured.
 struct TrainCoupledHmm {
-  int audio_states = 16;
-  int visual_states = 16;
+  int audio_states = 20;
+  int visual_states = 20;
   int mixture = 1;
   int changes = 2;
   CovarianceKind covariance = CovarianceKind::diagonal;

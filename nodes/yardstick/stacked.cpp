@@ -85,7 +85,7 @@ StackedTraining stack_training(const Collected<Track>& audio, const Collected<Tr
 
   out.audio.resize(total, dimension * (2 * context + 1));
   out.visual.resize(total, pairs[0].visual->dimension());
-  at = 0;
+  Eigen::Index at = 0;
   for (const auto& p : pairs) {
     const Eigen::MatrixXd audio_rows = stacked(out.inputs, *p.audio);
     const Eigen::Index first = at;
