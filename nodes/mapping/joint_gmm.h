@@ -21,11 +21,11 @@ namespace talkgraph {
 /// std::runtime_error, naming the track, if none has a measured frame, if lengths differ by more than two frames, on
 /// different dimensions, and on values that are not finite.
 struct TrainJointGmm {
-  int components = 16;
+  int components = 32;
   double floor = 1e-2;
-  int iterations = 50;
+  int iterations = 20;
   double tolerance = 1e-4;
-  int descent = 20;
+  int descent = 60;
 
   JointGmm operator()(const Collected<Track>& audio, const Collected<Track>& visual, Random& random,
                       Context& context) const;
