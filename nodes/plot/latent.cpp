@@ -271,7 +271,8 @@ void describe(Description<PlotLatent>& d) {
       .input("paths", "synthesised latent points, drawn over them: latents of mapping.ssgpdm_synthesise, or {}")
       .input("states", "whose segments the paths are: states of mapping.ssgpdm_synthesise, or {}")
       .output("plot", "one panel");
-  d.param("state", &PlotLatent::state).doc("label of the state; empty: the one with most frames, if possible of several phones");
+  d.param("state", &PlotLatent::state)
+      .doc("label of the state; empty: the one with most frames, if possible of several phones");
   d.param("process", &PlotLatent::process)
       .doc("whose precision is the background: audio, visual, observations or dynamics; empty: the last one observed");
   d.param("dimensions", &PlotLatent::dimensions).at_least(1).doc("two, from 1; empty: the most relevant two");

@@ -200,7 +200,8 @@ void describe(Description<LatentPage>& d) {
       .input("paths", "synthesised latent points, drawn as well: latents of mapping.ssgpdm_synthesise, or {}")
       .input("states", "whose segments the paths are: states of mapping.ssgpdm_synthesise, or {}")
       .output("file", "the page");
-  d.param("state", &LatentPage::state).doc("label of the state; empty: the one with most frames, if possible of several phones");
+  d.param("state", &LatentPage::state)
+      .doc("label of the state; empty: the one with most frames, if possible of several phones");
   d.param("process", &LatentPage::process)
       .doc("whose precision is the cloud: audio, visual, observations or dynamics; empty: the last one observed");
   d.param("dimensions", &LatentPage::dimensions).at_least(1).doc("three, from 1; empty: the most relevant three");

@@ -29,7 +29,10 @@ Track RidgePredict::operator()(const RidgeModel& model, const Track& audio) cons
 }
 
 void describe(Description<RidgeTrain>& d) {
-  d.type("yardstick.ridge_train").version(2).summary("learns ridge regression from sound to visual parameters").stored();
+  d.type("yardstick.ridge_train")
+      .version(2)
+      .summary("learns ridge regression from sound to visual parameters")
+      .stored();
   d.input("audio", "speech features at the video rate of the training sequences")
       .input("visual", "visual parameters of the training sequences")
       .output("model", "weights");
