@@ -230,8 +230,8 @@ void describe(Description<TrainPcca>& d) {
       .doc("of the covariances to a multiple of I, times dimensions / (dimensions + frames); 0: none");
 }
 
-Track ProjectPcca::operator()(const Pcca& model, const Track* audio, const Track* visual) const {
-  if (!audio && !visual) throw std::runtime_error("neither stream is there: wire audio, visual or both");
+std::optional<Track> ProjectPcca::operator()(const Pcca& model, const Track* audio, const Track* visual) const {
+  if (!audio && !visual) return {};
   if (audio) require_frames_of(*audio, model.mean_y.size(), "the audio side of PCCA");
   if (visual) require_frames_of(*visual, model.mean_z.size(), "the visual side of PCCA");
   const Track& first = audio ? *audio : *visual;
@@ -258,7 +258,7 @@ void describe(Description<ProjectPcca>& d) {
   d.source("Bach and Jordan 2005");
   d.input("model", "of latent.pcca").input("audio", "of the features that the model was trained on");
   d.input("visual", "likewise");
-  d.output("latents", "posterior means, T × d");
+  d.output("latents", "posterior means, T × d; nothing where neither stream is there");
 }
 
 }  // namespace talkgraph

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "graph/context.h"
 #include "graph/description.h"
@@ -56,10 +57,11 @@ struct TrainPcca {
 void describe(Description<TrainPcca>& d);
 
 /// Posterior means of latent points given one stream or both, T × d. In a frame that one stream has lost the other
-/// speaks alone; one that all have lost has the prior's mean, and is marked. Throws std::runtime_error on no stream, on
-/// other dimensions than the model's, on values that are not finite and on lengths that differ by more than two frames.
+/// speaks alone; one that all have lost has the prior's mean, and is marked. No stream gives nothing. Throws
+/// std::runtime_error on other dimensions than the model's, on values that are not finite and on lengths that differ by
+/// more than two frames.
 struct ProjectPcca {
-  Track operator()(const Pcca& model, const Track* audio, const Track* visual) const;
+  std::optional<Track> operator()(const Pcca& model, const Track* audio, const Track* visual) const;
 };
 void describe(Description<ProjectPcca>& d);
 
