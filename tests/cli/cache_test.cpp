@@ -113,6 +113,7 @@ TEST(Nodes, WhatTheyGiveCanBeWrittenAndLoaded) {
       try {
         port.info->visit(*hdf5_reader(file), port.info->make().get());
       } catch (const std::runtime_error& e) {
+        EXPECT_EQ(port.name, "model") << name;
         EXPECT_THAT(e.what(), HasSubstr("train it anew")) << name << " " << port.name;
       }
     }

@@ -241,7 +241,7 @@ TEST_P(ExecutorTest, ALineOfNodesMayFailDropAndBeReadFromTheSide) {
 }
 
 TEST_P(ExecutorTest, ItemsInALineRunBesideEachOther) {
-  if (GetParam() == Executor::serial) GTEST_SKIP() << "one at a time";
+  if (GetParam() == Executor::serial) GTEST_SKIP() << "the serial executor runs one at a time";
   std::atomic<bool> cancel{false};
   options_.cancel = &cancel;
   struct Busy : RunObserver {
@@ -310,7 +310,7 @@ TEST_P(ExecutorTest, CancelStopsBetweenItems) {
 }
 
 TEST_P(ExecutorTest, AFailureStopsNodesThatAreStillRunning) {
-  if (GetParam() == Executor::serial) GTEST_SKIP() << "one at a time";
+  if (GetParam() == Executor::serial) GTEST_SKIP() << "the serial executor runs one at a time";
   const int source = b_.add("source", "toy.source");
   b_.output("a", b_.add("endless", "toy.endless", {b_.add("c", "toy.constant")}));
   b_.output("b", b_.add("fail", "toy.fail_at", {source}, {{"key", "u3"}}));
