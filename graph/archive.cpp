@@ -427,6 +427,10 @@ std::size_t Columns::rows() const {
   return columns_.empty() ? 0 : std::visit([](const auto& cells) { return cells.size(); }, columns_.front().cells);
 }
 
+void refuse_size(std::string_view name) {
+  throw std::runtime_error(fmt::format("\"{}\" has another size than it must have", name));
+}
+
 void Columns::refuse() { throw std::logic_error("a row holds numbers and texts alone"); }
 
 }  // namespace detail

@@ -109,6 +109,19 @@ template <class T>
 struct is_string_map<std::map<std::string, T>> : std::true_type {};
 template <class T>
 inline constexpr bool is_eigen = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
+
+[[noreturn]] void refuse_size(std::string_view name);
+/// To a matrix or vector, whose size may be fixed; a row takes a column.
+template <class From, class T>
+void assign(std::string_view name, const From& from, T& to) {
+  const auto fits = [](Eigen::Index fixed, Eigen::Index n) { return fixed == Eigen::Dynamic || fixed == n; };
+  if constexpr (From::IsVectorAtCompileTime) {
+    if (!fits(T::SizeAtCompileTime, from.size())) refuse_size(name);
+  } else if (!fits(T::RowsAtCompileTime, from.rows()) || !fits(T::ColsAtCompileTime, from.cols())) {
+    refuse_size(name);
+  }
+  to = from.template cast<typename T::Scalar>();
+}
 template <class T>
 inline constexpr bool is_eigen_vector = false;
 template <class T>
@@ -205,7 +218,8 @@ void Archive::elements(std::string_view name, std::vector<T>& value) {
     matrices(name, v);
     if (!loading()) return;
     value.clear();
-    for (const auto& e : v) value.push_back(e.template cast<typename T::Scalar>());
+    value.resize(v.size());
+    for (std::size_t i = 0; i < v.size(); ++i) detail::assign(name, v[i], value[i]);
   } else if constexpr (is_row<T>) {
     rows(name, value);
   } else {
@@ -244,12 +258,11 @@ void Archive::member(std::string_view name, T& value) {
     for (const auto e : value) v.push_back(static_cast<double>(e));
     numbers(name, v);
     if (loading())
-      value = Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()))
-                  .template cast<typename T::Scalar>();
+      detail::assign(name, Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())), value);
   } else if constexpr (detail::is_eigen<T>) {
     Eigen::MatrixXd m = value.template cast<double>();
     matrix(name, m);
-    if (loading()) value = m.template cast<typename T::Scalar>();
+    if (loading()) detail::assign(name, m, value);
   } else if constexpr (detail::is_optional<T>::value) {
     const bool there = present(name, value.has_value());
     if (!there) value.reset();

@@ -23,8 +23,7 @@ class BayesianObjective : public Maximand {
   Eigen::Index size() const override { return start_.size(); }
 
   const Eigen::VectorXd& start() const { return start_; }
-  /// Holds the noise of all streams where it is, or lets it go.
-  void hold_noise(bool hold) { hold_noise_ = hold; }
+  void hold_noise(bool hold) override { hold_noise_ = hold; }
 
   Eigen::Index rows() const { return latents_.rows(); }
   Eigen::Index dimension() const { return d_; }

@@ -33,6 +33,7 @@ double GpObjective::compute(const Eigen::VectorXd& parameters, Eigen::VectorXd* 
   const double value = likelihood_.evaluate(kernel_, x_, inducing_, y_, &g_);
   gradient->resize(size());
   *gradient << g_.inducing.reshaped().head(moving_), g_.kernel;
+  if (noise_held_) gradient->tail(size() - moving_).array() *= without_noise(kernel_).array();
   return value;
 }
 

@@ -15,6 +15,7 @@ class GpObjective : public Maximand {
 
   Eigen::VectorXd start() const;
   Eigen::Index size() const override;
+  void hold_noise(bool hold) override { noise_held_ = hold; }
   std::string name(Eigen::Index parameter) const override;
   /// Throws FactorisationError.
   GaussianProcess posterior(const Eigen::VectorXd& parameters);
@@ -31,6 +32,7 @@ class GpObjective : public Maximand {
   Eigen::MatrixXd inducing_;
   Eigen::Index moving_;  // numbers of inducing points that are parameters
   GpGradient g_;
+  bool noise_held_ = false;
 };
 
 }  // namespace talkgraph

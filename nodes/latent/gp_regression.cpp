@@ -7,7 +7,7 @@
 
 #include "nodes/latent/gp_objective.h"
 #include "nodes/latent/predictive.h"
-#include "nodes/yardstick/centred.h"
+#include "nodes/types/centred.h"
 #include "nodes/yardstick/stacked.h"
 
 namespace talkgraph {
@@ -58,26 +58,23 @@ GpRegression TrainGp::operator()(const Collected<Track>& audio, const Collected<
 
   const auto [likelihood, start] = approximate_gp(approximation, x, training.lengths, inducing);
   GpObjective objective(*likelihood, kernel_of(kernel, x.cols()), x, start, fix_inducing, y);
-  Eigen::VectorXd parameters = objective.start();
-  const auto minimiser = make_optimiser(optimiser);
-  minimiser->iterations = iterations;
-  minimiser->on_iteration = [&](int i, double) {
-    context.check_cancelled();
-    context.progress(static_cast<double>(i) / iterations);
-  };
-  const OptimiserReport report = maximise(*minimiser, objective, parameters);
+  const OptimiserState reached = maximise("Gaussian process", objective, objective.start(), context);
+  const double log_scale = static_cast<double>(x.rows()) * scale.array().log().sum();
 
   GpRegression model;
   model.inputs = training.inputs;
   model.inputs.scale *= shrink;
-  model.process = objective.posterior(parameters);
+  model.process = objective.posterior(reached.parameters);
   model.process.mean = visual_frames.mean;
   model.process.scale = scale;
-  model.log_likelihood = -report.cost - static_cast<double>(x.rows()) * scale.array().log().sum();
-  model.iterations = report.iterations;
+  model.log_likelihood = -reached.report.cost - log_scale;
+  model.iterations = reached.report.iterations;
+  model.frames = x.rows();
+  for (const double cost : reached.report.trace) model.trace.push_back(-cost - log_scale);
+  model.ended = str(reached.report.reason);
   model.jitter = likelihood->jitter();
   context.log(fmt::format("{} frames of {} inputs, ln p = {:.6g} after {} iterations ({}){}", x.rows(), x.cols(),
-                          model.log_likelihood, report.iterations, str(report.reason),
+                          model.log_likelihood, model.iterations, model.ended,
                           model.jitter > 0 ? fmt::format(", jitter {:.1g}", model.jitter) : ""));
   return model;
 }
@@ -95,7 +92,7 @@ PredictGp::Prediction PredictGp::operator()(const GpRegression& model, const Tra
 }
 
 void describe(Description<TrainGp>& d) {
-  d.type("latent.gp").version(2).summary("learns Gaussian process regression from sound to visual parameters").stored();
+  d.type("latent.gp").version(3).summary("learns Gaussian process regression from sound to visual parameters").stored();
   d.source("Thesis §4.2.5, Eqns 4.20-4.33");
   d.input("audio", "speech features at the video rate of the training sequences")
       .input("visual", "visual parameters of the training sequences")
@@ -108,8 +105,7 @@ void describe(Description<TrainGp>& d) {
           "inducing points, at most");
   d.param("inducing", &TrainGp::inducing).at_least(1).doc("inducing points");
   d.param("fix_inducing", &TrainGp::fix_inducing).doc("inducing points stay the frames they start from");
-  d.param("optimiser", &TrainGp::optimiser).doc("scaled conjugate gradients, or L-BFGS");
-  d.param("iterations", &TrainGp::iterations).at_least(0).doc("limit of the optimiser");
+  describe_maximisation(d);
 }
 
 void describe(Description<PredictGp>& d) {

@@ -38,16 +38,15 @@ Kernel kernel_of(const std::vector<KernelChoice>& terms, Eigen::Index d);
 ///
 /// Throws std::runtime_error on no frames, NaN, and dimensions or lengths that do not fit; FactorisationError where the
 /// kernel has no noise and the approximation needs it.
-struct TrainGp {
+struct TrainGp : Maximisation {
   int context = 5;
   std::vector<KernelChoice> kernel = {
       {KernelKind::rbf, 1, 1, 0}, {KernelKind::bias, 0.1, 1, 0}, {KernelKind::white, 0.5, 1, 1e-3}};
   CovarianceApproximation approximation = CovarianceApproximation::fitc;
   int inducing = 100;
   bool fix_inducing = false;
-  OptimiserKind optimiser = OptimiserKind::scg;
-  int iterations = 100;
 
+  TrainGp() { iterations = 100; }
   GpRegression operator()(const Collected<Track>& audio, const Collected<Track>& visual, Context& context) const;
 };
 void describe(Description<TrainGp>& d);

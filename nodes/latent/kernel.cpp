@@ -66,6 +66,12 @@ std::vector<std::string> parameter_names(const Kernel& kernel) {
   return names;
 }
 
+Eigen::VectorXd without_noise(const Kernel& kernel) {
+  Eigen::VectorXd mask = Eigen::VectorXd::Ones(parameter_count(kernel));
+  each(kernel, Overload{[&](const WhiteTerm&, Eigen::Index i) { mask[i] = 0; }, [](const auto&, Eigen::Index) {}});
+  return mask;
+}
+
 Eigen::VectorXd log_parameters(const Kernel& kernel) {
   Eigen::VectorXd logs(parameter_count(kernel));
   each(kernel, Overload{[&](const RbfTerm& t, Eigen::Index i) {

@@ -18,6 +18,8 @@ Eigen::Index parameter_count(const Kernel& kernel);
 /// Their names, in order: "rbf_variance", "inverse_width", or "ard_variance", "inverse_width_1", ..., or "linear",
 /// "bias", "white".
 std::vector<std::string> parameter_names(const Kernel& kernel);
+/// 0 where a parameter is white noise, 1 elsewhere.
+Eigen::VectorXd without_noise(const Kernel& kernel);
 /// Natural logarithms of the parameters, of white noise without its floor.
 Eigen::VectorXd log_parameters(const Kernel& kernel);
 void set_log_parameters(Kernel& kernel, const Eigen::Ref<const Eigen::VectorXd>& logs);

@@ -3,16 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <filesystem>
 
 #include "nodes/latent/compact.h"
-#include "nodes/latent/lbfgs.h"
-#include "nodes/latent/scg.h"
 #include "nodes/latent/sequences.h"
 #include "nodes/latent/sgpdm_objective.h"
-#include "nodes/yardstick/centred.h"
+#include "nodes/types/centred.h"
 
 namespace talkgraph {
 
@@ -123,104 +119,6 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
   return problem;
 }
 
-/// Unfinished training of one model on disk.
-class Checkpoint {
- public:
-  Checkpoint(const std::string& folder, const Key& of) {
-    if (folder.empty()) return;
-    std::filesystem::create_directories(folder);
-    path_ = std::filesystem::path(folder) / (of.str() + ".h5");
-  }
-  /// False where there is none, or only one that cannot be read, which is removed.
-  bool load(const std::string& subject, const Context& context) {
-    if (path_.empty() || !std::filesystem::exists(path_)) return false;
-    try {
-      fields(*hdf5_reader(path_.string()));
-      return true;
-    } catch (const std::runtime_error& e) {
-      context.warn(fmt::format("{}: the checkpoint cannot be read ({}): it is removed, training begins anew", subject,
-                               e.what()));
-      remove();
-      state = {};
-      return false;
-    }
-  }
-  void save_now_and_then() {
-    if (path_.empty() || std::chrono::steady_clock::now() - saved_ < std::chrono::seconds(10)) return;
-    save();
-    saved_ = std::chrono::steady_clock::now();
-  }
-  void save() {
-    if (!path_.empty()) write_hdf5(path_.string(), [this](Archive& ar) { fields(ar); });
-  }
-  void remove() {
-    if (!path_.empty()) std::filesystem::remove(path_);
-  }
-
-  OptimiserState state;
-  bool noise_held = false;
-
- private:
-  void fields(Archive& ar) {
-    ar("state", state);
-    ar("noise_held", noise_held);
-  }
-  std::filesystem::path path_;
-  std::chrono::steady_clock::time_point saved_ = std::chrono::steady_clock::now();
-};
-
-/// Of the start of an optimisation, which stands for all that its steps depend on, and of where it ends.
-Key key_of(const std::string& subject, SgpdmObjective& objective, const LatentTraining& options) {
-  std::string what = subject;
-  Eigen::VectorXd start = objective.start(), gradient;
-  double cost = 0;
-  objective.evaluate(start, cost, &gradient);
-  std::int64_t hold = options.hold_noise, iterations = options.iterations;
-  std::int64_t optimiser = static_cast<std::int64_t>(options.optimiser);
-  double time_limit = options.time_limit;
-  return content_key([&](Archive& ar) {
-    ar("subject", what);
-    ar("start", start);
-    ar("cost", cost);
-    ar("gradient", gradient);
-    ar("hold", hold);
-    ar("optimiser", optimiser);
-    ar("iterations", iterations);
-    ar("time_limit", time_limit);
-  });
-}
-
-/// Runs the optimiser, first with the noise held, from the start or a checkpoint; `state` receives the end.
-void train(const LatentTraining& options, int iterations, const std::string& subject, SgpdmObjective& objective,
-           Checkpoint& checkpoint, Context& context) {
-  const auto started = std::chrono::steady_clock::now();
-  const auto optimiser = make_optimiser(options.optimiser);
-  if (options.time_limit > 0) optimiser->seconds = options.time_limit;
-  optimiser->on_iteration = [&](int i, double) {
-    checkpoint.save_now_and_then();
-    if (context.cancelled()) checkpoint.save();
-    context.check_cancelled();
-    context.progress(static_cast<double>(i) / iterations);
-  };
-  OptimiserState& state = checkpoint.state;
-  if (!checkpoint.load(subject, context)) {
-    state.parameters = objective.start();
-    checkpoint.noise_held = options.hold_noise > 0;
-  }
-  if (checkpoint.noise_held) {
-    objective.hold_noise(true);
-    optimiser->iterations = std::min(options.hold_noise, iterations);
-    maximise(*optimiser, objective, state);
-    objective.hold_noise(false);
-    checkpoint.noise_held = false;
-    if (state.report.reason == StopReason::time) return;
-    optimiser->seconds -= std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    state.restart();
-  }
-  optimiser->iterations = iterations;
-  maximise(*optimiser, objective, state);
-}
-
 }  // namespace
 
 Eigen::RowVectorXd output_scale(const Eigen::RowVectorXd& deviation, OutputScaling scaling) {
@@ -264,11 +162,6 @@ ApproximateGp approximate_gp(CovarianceApproximation approximation, const Eigen:
   return {make_likelihood(approximation, lengths, inducing), spread(x, inducing)};
 }
 
-std::unique_ptr<Optimiser> make_optimiser(OptimiserKind kind) {
-  if (kind == OptimiserKind::lbfgs) return std::make_unique<Lbfgs>();
-  return std::make_unique<ScaledConjugateGradients>();
-}
-
 TrainedLatents train_latents(const LatentTraining& options, const std::string& subject,
                              const std::vector<TrainingStream>& streams, const Lengths& lengths,
                              const StartValues& start, Context& context) try {
@@ -287,9 +180,10 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
 
   const bool varies = std::any_of(frames.begin(), frames.end(), [](const auto& f) { return f.varies(); });
   if (!varies) context.warn(nothing_varies(subject, streams[0].frames.rows()));
-  Checkpoint checkpoint(options.checkpoint, options.checkpoint.empty() ? Key{} : key_of(subject, objective, options));
-  train(options, varies ? options.iterations : 0, subject, objective, checkpoint, context);
-  Eigen::VectorXd parameters = checkpoint.state.parameters;
+  Maximisation how = options;
+  if (!varies) how.iterations = 0;
+  OptimiserState reached = how.maximise(subject, objective, objective.start(), context);
+  Eigen::VectorXd parameters = std::move(reached.parameters);
   const bool constrained = options.back_constraint != BackConstraintKind::none;
   if (!constrained) parameters = rounded(parameters, 20);
 
@@ -310,9 +204,8 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
     trained.back_constraint = of_rescaled(std::move(*b), trained.processes[0].scale.array() / frames[0].scale.array());
   trained.first_variance = objective.first_variance(parameters);
   trained.jitter = objective.jitter();
-  trained.report = checkpoint.state.report;
+  trained.report = std::move(reached.report);
   trained.ended = varies ? str(trained.report.reason) : "nothing varies";
-  checkpoint.remove();
   context.log(fmt::format("{}: {} frames in {} sequences, d = {}, ln p = {:.6g} after {} iterations ({}){}", subject,
                           trained.latents.rows(), lengths.size(), d, -trained.report.cost, trained.report.iterations,
                           trained.ended, trained.jitter > 1e-6 ? fmt::format(", jitter {:.1g}", trained.jitter) : ""));

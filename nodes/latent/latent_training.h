@@ -8,7 +8,7 @@
 #include "graph/context.h"
 #include "graph/description.h"
 #include "nodes/latent/gp_likelihood.h"
-#include "nodes/latent/optimiser.h"
+#include "nodes/latent/maximisation.h"
 #include "nodes/types/sgpdm.h"
 
 namespace talkgraph {
@@ -59,11 +59,6 @@ template <>
 inline constexpr EnumNames<FirstPoint, 2> enum_names<FirstPoint>{
     {{FirstPoint::variance, "variance"}, {FirstPoint::noise, "noise"}}};
 
-enum class OptimiserKind { scg, lbfgs };
-template <>
-inline constexpr EnumNames<OptimiserKind, 2> enum_names<OptimiserKind>{
-    {{OptimiserKind::scg, "scg"}, {OptimiserKind::lbfgs, "lbfgs"}}};
-
 /// What training has in common for one and for two observed streams: its
 /// parameters, and the maximisation of Eqn 4.69 over latent points (or a
 /// back-constraint's parameters), inducing points and kernel parameters.
@@ -74,7 +69,7 @@ inline constexpr EnumNames<OptimiserKind, 2> enum_names<OptimiserKind>{
 /// latent dimension is lowered to the largest stream's and to N − 1 (at least 1), with a warning. Scales are as
 /// output_scale() has them. Data that do not vary at all are not optimised: the model answers with their mean, and a
 /// warning says so.
-struct LatentTraining {
+struct LatentTraining : Maximisation {
   int latent_dimension = 3;
   ObservationKernel kernel = ObservationKernel::rbf;
   CovarianceApproximation approximation = CovarianceApproximation::fitc;
@@ -91,13 +86,8 @@ struct LatentTraining {
   bool learn_scale = false;
   double noise = 0.5;
   double minimum_noise = 1e-3;
-  int hold_noise = 0;
   double prior_deviation = 0.2;
   std::vector<std::string> fixed = {"dynamics.inverse_width"};
-  OptimiserKind optimiser = OptimiserKind::scg;
-  int iterations = 20;
-  double time_limit = 0;
-  std::string checkpoint;
 };
 
 /// What outputs of these standard deviations (1 × D) are divided by. Those that do not vary keep 1, or the common
@@ -163,8 +153,6 @@ struct ApproximateGp {
 ApproximateGp approximate_gp(CovarianceApproximation approximation, const Eigen::MatrixXd& x,
                              const std::vector<std::int64_t>& lengths, Eigen::Index inducing);
 
-std::unique_ptr<Optimiser> make_optimiser(OptimiserKind kind);
-
 template <class Node>
 void describe_training(Description<Node>& d) {
   const auto param = [&]<class M>(const char* name, M LatentTraining::*member) {
@@ -203,21 +191,12 @@ void describe_training(Description<Node>& d) {
   param("learn_scale", &LatentTraining::learn_scale).doc("the outputs' scales are optimised, too");
   param("noise", &LatentTraining::noise).positive().doc("noise variance to start from, in scaled units");
   param("minimum_noise", &LatentTraining::minimum_noise).at_least(0).doc("noise variance stays above this");
-  param("hold_noise", &LatentTraining::hold_noise)
-      .at_least(0)
-      .doc("first iterations in which noise stays as it is, so that it does not swallow the signal");
   param("prior_deviation", &LatentTraining::prior_deviation)
       .at_least(0)
       .doc("standard deviation of a normal prior on log kernel parameters about their start values; 0: none");
   param("fixed", &LatentTraining::fixed)
       .doc("what is not optimised: latents (or the back-constraint), inducing, or <stream or dynamics>.<parameter>");
-  param("optimiser", &LatentTraining::optimiser).doc("scaled conjugate gradients, or L-BFGS");
-  param("iterations", &LatentTraining::iterations).at_least(0).doc("limit of the optimiser");
-  param("time_limit", &LatentTraining::time_limit)
-      .at_least(0)
-      .doc("seconds after which the optimiser stops; 0: none. What comes of it depends on the machine");
-  param("checkpoint", &LatentTraining::checkpoint)
-      .doc("folder where unfinished training is saved every ten seconds and gone on from after a kill; empty: none");
+  describe_maximisation(d);
 }
 
 }  // namespace talkgraph

@@ -10,6 +10,7 @@
 
 #include "nodes/latent/normal.h"
 #include "nodes/latent/sequences.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 
@@ -235,7 +236,9 @@ std::optional<Track> ProjectPcca::operator()(const Pcca& model, const Track* aud
   if (audio) require_frames_of(*audio, model.mean_y.size(), "the audio side of PCCA");
   if (visual) require_frames_of(*visual, model.mean_z.size(), "the visual side of PCCA");
   const Track& first = audio ? *audio : *visual;
-  const Eigen::Index frames = visual ? common_frames(first, *visual, "the track") : first.frames();
+  const Eigen::Index frames =
+      visual ? common_frames("the track", first.frames(), "audio frames", visual->frames(), "visual frames")
+             : first.frames();
   const auto there = [](const Track* track, Eigen::Index t) { return track && !track->is_lost(t); };
   Track out{Eigen::MatrixXd::Zero(frames, model.correlations.size()), first.rate, first.start, {}, {}};
   for (Eigen::Index t = 0; t < frames; ++t) {

@@ -13,6 +13,8 @@ class Maximand : public Objective {
   double value(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient);
   /// False where value() throws FactorisationError.
   bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) final;
+  /// Holds noise variances among the parameters, if any, where they are, or lets go of them.
+  virtual void hold_noise(bool /*hold*/) {}
 
  private:
   virtual double compute(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) = 0;

@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "nodes/latent/bayesian_objective.h"
+#include "nodes/latent/checkpoint.h"
 #include "nodes/latent/latent_dynamics.h"
 #include "nodes/latent/linear_models.h"
-#include "nodes/latent/scg.h"
 #include "nodes/latent/stochastic_training.h"
 
 namespace talkgraph {
@@ -166,40 +166,67 @@ struct Trained {
   std::vector<double> trace;
 };
 
-Trained train_whole(const TrainMrd& node, BayesianObjective& objective, Context& context) {
-  Trained trained{objective.start(), 0, 0, "", {}};
-  ScaledConjugateGradients optimiser;
-  const int all = node.noise_held + node.iterations;
-  for (const bool hold : {true, false}) {
-    optimiser.iterations = hold ? node.noise_held : node.iterations;
-    optimiser.on_iteration = [&](int i, double) {
-      context.check_cancelled();
-      context.progress(static_cast<double>(hold ? i : node.noise_held + i) / all);
-    };
-    objective.hold_noise(hold);
-    const OptimiserReport report = maximise(optimiser, objective, trained.parameters);
-    trained.iterations += report.iterations;
-    trained.end = str(report.reason);
-    for (std::size_t i = hold ? 0 : 1; i < report.trace.size(); ++i) trained.trace.push_back(-report.trace[i]);
-  }
-  trained.bound = objective.value(trained.parameters, nullptr);
-  return trained;
-}
-
-Trained train_in_parts(const TrainMrd& node, BayesianObjective& objective, Context& context, Random& random) {
+StochasticTraining in_parts(const TrainMrd& node) {
   StochasticTraining training;
   training.batch = node.batch;
   training.epochs = node.epochs;
-  training.noise_held = node.epochs * node.noise_held / std::max(1, node.noise_held + node.iterations);
+  training.noise_held = node.epochs * node.hold_noise / std::max(1, node.iterations);
+  if (node.time_limit > 0) training.seconds = node.time_limit;
+  return training;
+}
+
+Trained train_whole(const TrainMrd& node, const std::string& subject, BayesianObjective& objective, Context& context) {
+  OptimiserState reached = node.maximise(subject, objective, objective.start(), context);
+  Trained trained{std::move(reached.parameters), 0, reached.report.iterations, str(reached.report.reason), {}};
+  trained.bound = objective.value(trained.parameters, nullptr);
+  for (const double cost : reached.report.trace) trained.trace.push_back(-cost);
+  return trained;
+}
+
+/// Of all that training in parts depends on.
+Key key_of(const TrainMrd& node, const std::string& subject, BayesianObjective& objective) {
+  std::string what = subject;
+  Eigen::VectorXd start = objective.start();
+  double bound = objective.value(start, nullptr);
+  StochasticTraining training = in_parts(node);
+  return content_key([&](Archive& ar) {
+    ar("subject", what);
+    ar("start", start);
+    ar("bound", bound);
+    ar("batch", training.batch);
+    ar("epochs", training.epochs);
+    ar("noise_held", training.noise_held);
+    ar("seconds", training.seconds);
+  });
+}
+
+Trained train_in_parts(const TrainMrd& node, const std::string& subject, BayesianObjective& objective, Context& context,
+                       Random& random) {
+  StochasticTraining training = in_parts(node);
+  StochasticTraining::State state;
+  Checkpoint saved(node.checkpoint, node.checkpoint.empty() ? Key{} : key_of(node, subject, objective),
+                   [&](Archive& ar) {
+                     ar("state", state);
+                     for (auto& stream : objective.streams()) ar(stream.name(), stream.inducing_posterior());
+                   });
+  if (!saved.load(subject, context)) {
+    state = {};
+    for (auto& stream : objective.streams()) stream.inducing_posterior() = {};
+  }
   training.on_part = [&](double share) {
     context.check_cancelled();
     context.progress(share);
   };
-  StochasticTraining::Reached reached = training(objective, random);
-  const double bound = *std::max_element(reached.trace.begin(), reached.trace.end());
-  const auto taken = static_cast<int>(reached.trace.size()) - 1;
-  return {std::move(reached.parameters), bound, taken, reached.converged ? "converged" : "epoch limit",
-          std::move(reached.trace)};
+  training.on_epoch = [&] {
+    saved.save_now_and_then();
+    if (context.cancelled()) saved.save();
+    context.check_cancelled();
+  };
+  training(objective, random, state);
+  saved.remove();
+  const double bound = *std::max_element(state.trace.begin(), state.trace.end());
+  const auto taken = static_cast<int>(state.trace.size()) - 1;
+  return {std::move(state.best), bound, taken, state.ended, std::move(state.trace)};
 }
 
 Trained untrained(BayesianObjective& objective) {
@@ -228,10 +255,11 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
   const Frames frames = frames_of(data, audio_scaling, visual_scaling);
   BayesianObjective objective = objective_of(*this, frames);
   const bool varies = frames.audio.varies || frames.visual.varies;
-  if (!varies) context.warn(nothing_varies("state \"" + data.label + "\"", objective.rows()));
+  const std::string subject = "state \"" + data.label + "\"";
+  if (!varies) context.warn(nothing_varies(subject, objective.rows()));
   const Trained trained = !varies     ? untrained(objective)
-                          : batch > 0 ? train_in_parts(*this, objective, context, random)
-                                      : train_whole(*this, objective, context);
+                          : batch > 0 ? train_in_parts(*this, subject, objective, context, random)
+                                      : train_whole(*this, subject, objective, context);
   const GaussianRows q = objective.posterior(trained.parameters);
   auto &audio = objective.streams()[0], &visual = objective.streams()[1];
   const Relevance r = relevance_of(audio, visual, q.mean, relevant, visual_only == VisualOnly::keep);
@@ -271,7 +299,7 @@ TrainMrd::Out TrainMrd::operator()(const StateData& data, Context& context, Rand
 }
 
 void describe(Description<TrainMrd>& d) {
-  d.type("latent.mrd").version(4).stored();
+  d.type("latent.mrd").version(5).stored();
   d.summary("trains a state's shared latent model, finding its dimension and what each stream needs of it");
   d.source("Titsias & Lawrence 2010; Damianou, Titsias & Lawrence 2011; Damianou, Ek, Titsias & Lawrence 2012");
   d.input("windows", "training windows of one state, NaN where a value is missing");
@@ -282,18 +310,15 @@ void describe(Description<TrainMrd>& d) {
       .at_least(1)
       .doc("dimensions to choose from, lowered to those of both streams and to the number of frames less one");
   d.param("inducing", &TrainMrd::inducing).at_least(1).doc("inducing points of each process");
-  d.param("iterations", &TrainMrd::iterations).at_least(0).doc("limit of scaled conjugate gradients");
-  d.param("noise_held", &TrainMrd::noise_held)
-      .at_least(0)
-      .doc("iterations before those with the noise held, so that it does not swallow the signal");
+  describe_maximisation(d);
   d.param("batch", &TrainMrd::batch)
       .at_least(0)
-      .doc("frames of a part in stochastic training; 0: all at once, by conjugate gradients");
+      .doc("frames of a part in stochastic training, for thousands of frames; 0: all at once, by the optimiser");
   d.param("epochs", &TrainMrd::epochs)
       .at_least(0)
       .doc(
           "most passes of stochastic training over all frames; it ends when ten gain less than 0.01 a frame, and holds "
-          "the noise in a share noise_held / (noise_held + iterations) of the most");
+          "the noise in a share hold_noise / iterations of the most");
   d.param("time_width", &TrainMrd::time_width)
       .at_least(0)
       .doc("width in frames of a prior over time on each window's latent path; 0: none");

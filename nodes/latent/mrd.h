@@ -34,13 +34,13 @@ inline constexpr EnumNames<VisualOnly, 2> enum_names<VisualOnly>{
 /// and the nearest neighbours of synthesis take the mean instead. The model's predictive variance is the mean over
 /// outputs.
 ///
-/// All frames at once are optimised by scaled conjugate gradients; with `batch`, parts of them by stochastic steps
+/// All frames at once are optimised by conjugate gradients or L-BFGS; with `batch`, parts of them by stochastic steps
 /// (StochasticTraining), for thousands of frames; the trace is of the bound after each epoch. Either way time grows
 /// with N·inducing², memory with N.
 ///
 /// Throws std::runtime_error if there are no frames, windows of unequal length or dimension, infinite values, a
 /// dimension that is missing throughout.
-struct TrainMrd {
+struct TrainMrd : Maximisation {
   struct Out {
     Sgpdm model;
     Table relevance;   ///< a row a dimension found: its relevance to audio and visual stream
@@ -48,8 +48,6 @@ struct TrainMrd {
   };
   int latent_dimension = 8;
   int inducing = 30;
-  int iterations = 100;
-  int noise_held = 20;
   int batch = 0;
   int epochs = 50;
   double time_width = 0;
@@ -64,6 +62,10 @@ struct TrainMrd {
   double dynamics_inverse_width = 1;
   double first_variance = 1;
 
+  TrainMrd() {
+    iterations = 120;
+    hold_noise = 20;
+  }
   Out operator()(const StateData& data, Context& context, Random& random) const;
 };
 void describe(Description<TrainMrd>& d);

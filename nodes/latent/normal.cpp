@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "nodes/yardstick/centred.h"
+#include "nodes/types/centred.h"
 
 namespace talkgraph {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "nodes/yardstick/centred.h"
+#include "nodes/types/centred.h"
 
 namespace talkgraph {
 

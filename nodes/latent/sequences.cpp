@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "nodes/types/paired.h"
+
 namespace talkgraph {
 
 namespace {
@@ -48,20 +50,13 @@ Sequences measured_runs(const Collected<Track>& tracks) {
   return s;
 }
 
-Eigen::Index common_frames(const Track& a, const Track& b, const std::string& subject) {
-  if (std::abs(a.frames() - b.frames()) > 2)
-    throw std::runtime_error(
-        fmt::format("{} has {} frames of one stream but {} of the other", subject, a.frames(), b.frames()));
-  return std::min(a.frames(), b.frames());
-}
-
 PairedFrames paired_frames(const Collected<Track>& audio, const Collected<Track>& visual) {
   Collected<Track> heard, seen;
   for (std::size_t i = 0; i < audio.size(); ++i) {
     const Track* other = visual.find(audio.key(i));
     if (!other) continue;
     Track a = audio[i], v = *other;
-    const Eigen::Index frames = common_frames(a, v, "sequence \"" + audio.key(i) + "\"");
+    const Eigen::Index frames = common_frames(audio.key(i), a.frames(), "audio frames", v.frames(), "visual frames");
     a.values.conservativeResize(frames, Eigen::NoChange);
     v.values.conservativeResize(frames, Eigen::NoChange);
     std::vector<std::int64_t> lost;

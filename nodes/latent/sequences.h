@@ -33,9 +33,6 @@ struct PairedFrames {
 /// Those that both tracks of a key have measured, tracks being used on their common beginning. Throws
 /// std::runtime_error as measured_runs does, and where common_frames does.
 PairedFrames paired_frames(const Collected<Track>& audio, const Collected<Track>& visual);
-/// How many frames two tracks have in common. Throws std::runtime_error, naming `subject`, if they differ by more than
-/// two.
-Eigen::Index common_frames(const Track& a, const Track& b, const std::string& subject);
 
 /// Throws std::runtime_error if the track has another dimension, or a value that is not finite; `model` is what has
 /// that dimension ("the mixture").

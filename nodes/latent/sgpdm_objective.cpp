@@ -94,8 +94,8 @@ void SgpdmObjective::fix() {
     if (place.observed && place.observed->learn_scale)
       for (Eigen::Index c = 0; c < place.observed->scale.size(); ++c)
         if (place.observed->values.col(c).isZero(0)) free_[place.scale + c] = 0;
-    Eigen::Index i = place.kernel;
-    for (const auto& parameter : parameter_names(place.stream->kernel)) noise_[i++] = parameter == "white" ? 0 : 1;
+    const Kernel& kernel = place.stream->kernel;
+    noise_.segment(place.kernel, parameter_count(kernel)) = without_noise(kernel);
   }
   for (const auto& name : problem_.fixed) {
     bool known = name == "latents" || name == "inducing";

@@ -59,8 +59,7 @@ class SgpdmObjective : public Maximand {
   std::string name(Eigen::Index parameter) const override;
 
   const Eigen::VectorXd& start() const { return start_; }
-  /// Holds the white noise of every process where it is, or lets go of it.
-  void hold_noise(bool held) { noise_held_ = held; }
+  void hold_noise(bool hold) override { noise_held_ = hold; }
   Eigen::MatrixXd latents(const Eigen::VectorXd& parameters);
   /// Of an observed stream, with its scale; its mean stays empty.
   GaussianProcess process(std::size_t stream, const Eigen::VectorXd& parameters);

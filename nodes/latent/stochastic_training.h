@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
+#include "graph/archive.h"
 #include "graph/random.h"
 #include "nodes/latent/bayesian_objective.h"
 
@@ -19,15 +21,22 @@ struct StochasticTraining {
   double latent_rate = 0.05;  ///< that of the latent points
   double tolerance = 0.01;    ///< of what the bound gains in `patience` epochs, a frame; less is the end
   int patience = 10;
+  double seconds = std::numeric_limits<double>::infinity();  ///< checked after each epoch
   std::function<void(double share)> on_part;
+  std::function<void()> on_epoch;  ///< when the state is complete
 
-  struct Reached {
-    Eigen::VectorXd parameters;  ///< those of the greatest bound
-    std::vector<double> trace;   ///< the bound of all frames at the start and after each epoch
-    bool converged = false;      ///< it gained less than the tolerance, with the noise let go
+  /// Where training stands after an epoch; the inducing variables stand in the objective.
+  struct State {
+    Eigen::VectorXd parameters;    ///< now; empty before the first epoch
+    Eigen::VectorXd mean, square;  ///< of their gradient, as Adam remembers it
+    std::int64_t steps = 0;        ///< parts taken
+    Eigen::VectorXd best;          ///< the parameters of the greatest bound
+    std::vector<double> trace;     ///< the bound of all frames at the start and after each epoch
+    std::string ended;             ///< why
   };
-  /// From objective.start(). Throws FactorisationError.
-  Reached operator()(BayesianObjective& objective, Random& random) const;
+  /// From objective.start(), or on from a state to the same bits. Throws FactorisationError.
+  void operator()(BayesianObjective& objective, Random& random, State& state) const;
 };
+void fields(Archive& ar, StochasticTraining::State& state);
 
 }  // namespace talkgraph

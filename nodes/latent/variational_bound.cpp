@@ -124,6 +124,23 @@ Eigen::MatrixXd CollapsedBound::reduction(const InducingVariables& u, const RowS
   return u.unwhitened_square(mean);
 }
 
+// Mean and variance follow from the precision at the next move().
+void fields(Archive& ar, StochasticBound& bound) {
+  std::vector<Eigen::MatrixXd> precisions, precision_means;
+  for (const auto& q : bound.posteriors_) {
+    precisions.push_back(q.precision);
+    precision_means.push_back(q.precision_mean);
+  }
+  ar("precisions", precisions);
+  ar("precision_means", precision_means);
+  if (!ar.loading()) return;
+  bound.posteriors_.resize(precisions.size());
+  for (std::size_t i = 0; i < precisions.size(); ++i) {
+    bound.posteriors_[i].precision = precisions[i];
+    bound.posteriors_[i].precision_mean = precision_means.at(i);
+  }
+}
+
 void StochasticBound::move(const InducingVariables& u, const RowStatistics& rows, double scale, double step) {
   const Eigen::Index m = u.count();
   const double weight = step * scale * u.precision();

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "graph/archive.h"
 #include "nodes/latent/cholesky.h"
 
 namespace talkgraph {
@@ -72,6 +73,8 @@ class CollapsedBound {
 /// (Hensman, Fusi and Lawrence 2013).
 class StochasticBound {
  public:
+  /// Of q(v).
+  friend void fields(Archive& ar, StochasticBound& bound);
   /// Moves q(v) by `step` along its natural gradient, where `scale` times the rows' terms stand for all rows: with
   /// step 1 it is the best q(v) of the rows given. At first it is the prior.
   void move(const InducingVariables& u, const RowStatistics& rows, double scale, double step);

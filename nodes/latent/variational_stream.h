@@ -60,6 +60,8 @@ class VariationalStream {
   /// Basis, weights and reduction of the process given all rows.
   GaussianProcess posterior(const GaussianRows& q);
   double jitter() const { return jitter_; }
+  /// What stochastic() has moved so far.
+  StochasticBound& inducing_posterior() { return stochastic_; }
 
  private:
   using Classes = std::vector<ObservedOutputs::Class>;

@@ -3,8 +3,8 @@
 #include "nodes/latent/coupled_hmm.h"
 #include "nodes/latent/em.h"
 #include "nodes/latent/trajectory.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

@@ -8,8 +8,8 @@
 #include "nodes/latent/normal.h"
 #include "nodes/latent/sequences.h"
 #include "nodes/mapping/dpds_objective.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

@@ -1,8 +1,8 @@
 #include "nodes/mapping/dpds_synthesise.h"
 
 #include "nodes/mapping/dpds.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

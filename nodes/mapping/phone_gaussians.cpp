@@ -7,9 +7,9 @@
 
 #include "nodes/latent/normal.h"
 #include "nodes/latent/sequences.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
 #include "nodes/mapping/trajectory_error.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

@@ -2,8 +2,8 @@
 
 #include "nodes/latent/em.h"
 #include "nodes/latent/lds.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

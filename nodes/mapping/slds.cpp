@@ -5,8 +5,8 @@
 #include "nodes/latent/em.h"
 #include "nodes/latent/lds.h"
 #include "nodes/latent/lds_expectations.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

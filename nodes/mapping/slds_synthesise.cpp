@@ -1,9 +1,9 @@
 #include "nodes/mapping/slds_synthesise.h"
 
 #include "nodes/latent/lds.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
 #include "nodes/mapping/slds.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

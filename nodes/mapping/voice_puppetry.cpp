@@ -5,8 +5,8 @@
 #include "nodes/latent/gmm.h"
 #include "nodes/latent/hmm.h"
 #include "nodes/latent/trajectory.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

@@ -4,9 +4,9 @@
 
 #include "nodes/latent/linear_models.h"
 #include "nodes/latent/sequences.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
 #include "nodes/speech/stack.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

@@ -8,6 +8,7 @@
 
 #include "nodes/plot/latent_space.h"
 #include "nodes/plot/svg.h"
+#include "nodes/types/gp_regression.h"
 
 namespace talkgraph {
 namespace {
@@ -24,11 +25,17 @@ struct Costs {
 
 std::vector<Costs> costs_of(const Value& model, bool per_frame) {
   std::vector<Costs> all;
-  for (const auto& space : latent_spaces(model)) {
-    Costs c{space.label, space.ended.empty() ? "not told" : space.ended, {}, space.latents->rows()};
-    for (const double ln_p : *space.trace)
-      c.values.push_back(per_frame ? -ln_p / static_cast<double>(c.frames) : -ln_p);
+  const auto add = [&](const std::string& name, const std::string& ended, const std::vector<double>& trace,
+                       std::int64_t frames) {
+    Costs c{name, ended.empty() ? "not told" : ended, {}, frames};
+    for (const double ln_p : trace) c.values.push_back(per_frame ? -ln_p / static_cast<double>(frames) : -ln_p);
     if (!c.values.empty()) all.push_back(std::move(c));
+  };
+  if (model && model.type().type == port_type<GpRegression>) {
+    const auto& gp = model.get<GpRegression>();
+    add("", gp.ended, gp.trace, gp.frames);
+  } else {
+    for (const auto& space : latent_spaces(model)) add(space.label, space.ended, *space.trace, space.latents->rows());
   }
   if (all.empty()) throw std::runtime_error("the model has kept no costs of its training; train it anew");
   return all;
@@ -123,7 +130,7 @@ void describe(Description<PlotConvergence>& d) {
   d.type("plot.convergence")
       .version(1)
       .summary("how training lowered its cost, iteration by iteration, and why it stopped");
-  d.input("model", "an Ssgpdm, an Sgpdm or a Gpdm");
+  d.input("model", "an Ssgpdm, an Sgpdm, a Gpdm or a GpRegression");
   d.output("plot", &PlotConvergence::Out::plot, "a panel a model; of many states median, band and worst");
   d.output("table", &PlotConvergence::Out::table, "a row a reason: states, their iterations and frames on average");
   d.param("per_frame", &PlotConvergence::per_frame).doc("the cost is divided by the frames trained on");

@@ -9,6 +9,9 @@ void fields(Archive& ar, GpRegression& g) {
   ar("process", g.process);
   ar("log_likelihood", g.log_likelihood);
   ar("iterations", g.iterations);
+  ar("frames", g.frames);
+  ar("trace", g.trace);
+  ar("ended", g.ended);
   ar("jitter", g.jitter);
   if (!ar.loading()) return;
   const Eigen::Index inputs = g.inputs.mean.size() * (2 * g.inputs.context + 1);

@@ -12,10 +12,13 @@ struct GpRegression {
   GaussianProcess process;    ///< of scaled visual parameters
   double log_likelihood = 0;  ///< of the training frames, natural logarithm; of Titsias' bound, the bound
   std::int64_t iterations = 0;
-  double jitter = 0;  ///< largest share of the mean variance added to a factorised matrix
+  std::int64_t frames = 0;    ///< trained on
+  std::vector<double> trace;  ///< log_likelihood at the start and after each iteration
+  std::string ended;          ///< why training stopped
+  double jitter = 0;          ///< largest share of the mean variance added to a factorised matrix
 };
 template <>
-inline constexpr PortType port_type<GpRegression>{"GpRegression", 1};
+inline constexpr PortType port_type<GpRegression>{"GpRegression", 2};
 void fields(Archive& ar, GpRegression& g);
 
 }  // namespace talkgraph

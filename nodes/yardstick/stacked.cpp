@@ -5,7 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "nodes/yardstick/centred.h"
+#include "nodes/types/centred.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 namespace {
@@ -24,12 +25,10 @@ std::vector<Pair> pair_up(const Collected<Track>& audio, const Collected<Track>&
   for (std::size_t i = 0; i < audio.size(); ++i) {
     const Track *a = &audio[i], *v = visual.find(audio.key(i));
     if (!v) continue;
-    if (std::abs(a->frames() - v->frames()) > 2)
-      throw std::runtime_error(audio.key(i) + ": " + std::to_string(a->frames()) + " audio frames, " +
-                               std::to_string(v->frames()) + " visual frames");
+    const Eigen::Index frames = common_frames(audio.key(i), a->frames(), "audio frames", v->frames(), "visual frames");
     if (!a->values.allFinite() || !v->values.allFinite())
       throw std::runtime_error(audio.key(i) + ": NaN or infinite values");
-    pairs.push_back({a, v, std::min(a->frames(), v->frames())});
+    pairs.push_back({a, v, frames});
     if (a->dimension() != pairs[0].audio->dimension() || v->dimension() != pairs[0].visual->dimension())
       throw std::runtime_error(audio.key(i) + ": other dimensions than the tracks before");
     if (a->dimension() == 0 || v->dimension() == 0)

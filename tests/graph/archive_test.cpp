@@ -161,6 +161,37 @@ TEST_F(ArchiveFile, SaysWhatIsWrong) {
   }
 }
 
+TEST_F(ArchiveFile, MembersOfFixedSizeTakeNoOther) {
+  Eigen::VectorXd pair = Eigen::VectorXd::LinSpaced(2, 1, 2), three = Eigen::VectorXd::Ones(3);
+  Eigen::MatrixXd corners = Eigen::MatrixXd::Ones(4, 3);
+  std::vector<Eigen::MatrixXd> pairs{pair, three};
+  write_hdf5(path, [&](Archive& ar) {
+    ar("pair", pair);
+    ar("three", three);
+    ar("corners", corners);
+    ar("pairs", pairs);
+  });
+  const auto reader = hdf5_reader(path);
+  Eigen::Vector2d v = Eigen::Vector2d::Zero();
+  Eigen::RowVector2d row = Eigen::RowVector2d::Zero();
+  Eigen::RowVectorXd any;
+  (*reader)("pair", v);
+  (*reader)("pair", row);
+  (*reader)("three", any);
+  EXPECT_EQ(v, Eigen::Vector2d(1, 2));
+  EXPECT_EQ(row, Eigen::RowVector2d(1, 2));
+  EXPECT_EQ(any, Eigen::RowVector3d::Ones());
+  Eigen::Matrix<int, Eigen::Dynamic, 3> triangles;
+  (*reader)("corners", triangles);
+  EXPECT_EQ(triangles.rows(), 4);
+  Eigen::Matrix<double, Eigen::Dynamic, 2> shape;
+  std::vector<Eigen::Vector2d> list;
+  EXPECT_THROW((*reader)("three", v), std::runtime_error);
+  EXPECT_THROW((*reader)("three", row), std::runtime_error);
+  EXPECT_THROW((*reader)("corners", shape), std::runtime_error);
+  EXPECT_THROW((*reader)("pairs", list), std::runtime_error);
+}
+
 /// No file grows beyond `bytes` while this lives, as on a full disk.
 class SmallDisk {
  public:

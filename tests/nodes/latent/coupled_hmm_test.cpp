@@ -129,6 +129,7 @@ TEST(CoupledHmm, IsNearlyAsLikelyAsTheModelItsDataWereDrawnFrom) {
   const Drawn unseen = sample(model, {1000}, 99);
   CoupledExpectations e;
   const double best = expect(model, unseen, e), reached = expect(found, unseen, e);
+  RecordProperty("behind the truth", fmt::format("{:.1f}", best - reached));
   EXPECT_GT(reached, best - 30);
   Context context;
   Random random(1);

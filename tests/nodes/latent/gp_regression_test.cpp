@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+
 #include "nodes/latent/gp_objective.h"
 #include "tests/nodes/latent/likelihoods.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -122,6 +127,59 @@ TEST(GpRegression, InducingPointsStayWhereTheyAreFixed) {
   }
   train.fix_inducing = false;
   EXPECT_GT(train(pairs.audio, pairs.visual, context).log_likelihood, fixed.log_likelihood);
+}
+
+TEST(GpRegression, HoldsTheNoiseInTheFirstIterations) {
+  const Pairs pairs(2);
+  TrainGp train = trainer(CovarianceApproximation::fitc);
+  train.iterations = train.hold_noise = 10;
+  Context context;
+  const GpRegression held = train(pairs.audio, pairs.visual, context);
+  EXPECT_NEAR(white_variance(held.process.kernel), 0.5, 1e-6);
+  EXPECT_EQ(held.trace.size(), 11u);
+  train.iterations = 20;
+  const GpRegression let_go = train(pairs.audio, pairs.visual, context);
+  EXPECT_LT(white_variance(let_go.process.kernel), 0.49);
+  EXPECT_GT(let_go.log_likelihood, held.log_likelihood);
+}
+
+TEST(GpRegression, TracesItsLikelihoodAndSaysWhyItEnded) {
+  const Pairs pairs(2);
+  TrainGp train = trainer(CovarianceApproximation::fitc);
+  train.iterations = 5;
+  Context context;
+  const GpRegression model = train(pairs.audio, pairs.visual, context);
+  EXPECT_EQ(model.frames, 80);
+  EXPECT_EQ(model.ended, "iteration limit");
+  ASSERT_EQ(model.trace.size(), 6u);
+  EXPECT_EQ(model.trace.back(), model.log_likelihood);
+  EXPECT_TRUE(std::is_sorted(model.trace.begin(), model.trace.end()));
+  train.iterations = 1000000;
+  train.time_limit = 0.05;
+  const GpRegression short_of_time = train(pairs.audio, pairs.visual, context);
+  EXPECT_GT(short_of_time.iterations, 0);
+  EXPECT_LT(short_of_time.iterations, 100000);
+}
+
+TEST(GpRegression, GoesOnWhereItWasStopped) {
+  const Pairs pairs(2);
+  const test::TemporaryFolder folder;
+  TrainGp train = trainer(CovarianceApproximation::fitc);
+  train.iterations = 20;
+  train.hold_noise = 5;
+  Context context;
+  const GpRegression whole = train(pairs.audio, pairs.visual, context);
+  train.checkpoint = folder.file("checkpoints");
+  std::atomic<bool> cancel = false;
+  Context stopped;
+  stopped.cancel = &cancel;
+  stopped.on_progress = [&](double share) { cancel = share >= 0.5; };
+  EXPECT_THROW(train(pairs.audio, pairs.visual, stopped), Cancelled);
+  EXPECT_FALSE(std::filesystem::is_empty(train.checkpoint));
+  const GpRegression resumed = train(pairs.audio, pairs.visual, context);
+  EXPECT_EQ(resumed.trace, whole.trace);
+  EXPECT_EQ(resumed.process.weights, whole.process.weights);
+  EXPECT_TRUE(std::filesystem::is_empty(train.checkpoint));
 }
 
 TEST(GpObjective, NamesItsParametersAndItsGradientAgreesWithDifferences) {

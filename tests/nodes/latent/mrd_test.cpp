@@ -1,17 +1,20 @@
 #include "nodes/latent/mrd.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "nodes/latent/latent_dynamics.h"
 #include "nodes/latent/predictive.h"
 #include "nodes/latent/sequence_objective.h"
 #include "tests/nodes/latent/gaussian.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -38,6 +41,16 @@ StateData shared_and_private(Eigen::Index frames, std::uint64_t seed) {
   return {"k-ae", {drawn(x(Eigen::all, {0, 1}), 12, seed + 10)}, {drawn(x(Eigen::all, {0, 2}), 15, seed + 20)}};
 }
 
+/// The same frames in windows of 10.
+StateData cut(const StateData& data) {
+  StateData parts{data.label, {}, {}};
+  for (Eigen::Index t = 0; t < data.audio[0].rows(); t += 10) {
+    parts.audio.push_back(data.audio[0].middleRows(t, 10));
+    parts.visual.push_back(data.visual[0].middleRows(t, 10));
+  }
+  return parts;
+}
+
 TrainMrd::Out trained(const TrainMrd& node, const StateData& data) {
   Context context;
   Random random(1);
@@ -56,7 +69,7 @@ std::string failure(const StateData& data) {
 TEST(TrainMrd, FindsSharedAndPrivateDimensions) {
   for (std::uint64_t seed = 100; seed < 103; ++seed) {
     TrainMrd node;
-    node.iterations = 200;
+    node.iterations = 220;
     node.visual_only = VisualOnly::keep;
     const auto out = trained(node, shared_and_private(80, seed));
     EXPECT_EQ(out.dimensions.cells[0][0], 80);
@@ -80,16 +93,16 @@ TEST(TrainMrd, FindsThemInPartsToo) {
   TrainMrd node;
   node.batch = 40;
   node.epochs = 600;
-  const auto out = trained(node, shared_and_private(120, 100));
+  const auto out = trained(node, cut(shared_and_private(120, 100)));
   EXPECT_EQ(out.dimensions.cells[0][1], 1);
   EXPECT_EQ(out.dimensions.cells[0][2], 1);
   EXPECT_EQ(out.dimensions.cells[0][3], 1);
 }
 
 TEST(TrainMrd, InPartsTracesTheBoundOfAllFramesAndSaysWhyItEnded) {
-  const StateData data = shared_and_private(120, 100);
+  const StateData data = cut(shared_and_private(120, 100));
   TrainMrd node;
-  node.iterations = 300;
+  node.iterations = 320;
   const Sgpdm whole = trained(node, data).model;
   node.batch = 40;
   node.epochs = 5;
@@ -104,7 +117,8 @@ TEST(TrainMrd, InPartsTracesTheBoundOfAllFramesAndSaysWhyItEnded) {
   const Sgpdm many = trained(node, data).model;
   EXPECT_EQ(many.ended, "converged");
   EXPECT_LT(many.iterations, 3000);
-  EXPECT_GT(many.log_likelihood, whole.log_likelihood - 300);
+  RecordProperty("behind", fmt::format("{:.1f}", whole.log_likelihood - many.log_likelihood));
+  EXPECT_GT(many.log_likelihood, whole.log_likelihood - 120);
 }
 
 /// Mean squared error of the visual frames at their latent points where `at` holds, as a share of that of the mean.
@@ -168,7 +182,8 @@ TEST(TrainMrd, AnswersDegenerateData) {
   for (const int batch : {0, 5}) {
     TrainMrd node;
     node.batch = batch;
-    node.epochs = node.iterations = 20;
+    node.epochs = 20;
+    node.iterations = 40;
     const auto windows = [](int count, Eigen::Index length) {
       StateData data{"a", {}, {}};
       for (int i = 0; i < count; ++i) {
@@ -240,12 +255,68 @@ TEST(TrainMrd, GivesTheSameBitsAgain) {
   for (const int batch : {0, 20}) {
     TrainMrd node;
     node.batch = batch;
-    node.iterations = 20;
+    node.iterations = 40;
     const auto a = trained(node, data).model, b = trained(node, data).model;
     EXPECT_EQ(a.latents, b.latents);
     EXPECT_EQ(a.visual.weights, b.visual.weights);
     EXPECT_EQ(a.log_likelihood, b.log_likelihood);
   }
+}
+
+TEST(TrainMrd, GoesOnWhereItWasStopped) {
+  const StateData data = cut(shared_and_private(40, 1));
+  const test::TemporaryFolder folder;
+  for (const int batch : {0, 20})
+    for (const auto optimiser : {OptimiserKind::scg, OptimiserKind::lbfgs}) {
+      TrainMrd node;
+      node.batch = batch;
+      node.optimiser = optimiser;
+      node.iterations = node.epochs = 30;
+      node.hold_noise = 10;
+      const Sgpdm whole = trained(node, data).model;
+      node.checkpoint = folder.file("checkpoints");
+      std::atomic<bool> cancel = false;
+      Context context;
+      context.cancel = &cancel;
+      context.on_progress = [&](double share) { cancel = share > 0.49 && share < 0.51; };
+      Random random(1);
+      EXPECT_THROW(node(data, context, random), Cancelled);
+      EXPECT_FALSE(std::filesystem::is_empty(node.checkpoint));
+      int told = 0;
+      Context on;
+      on.on_progress = [&](double) { ++told; };
+      Random again(1);
+      const Sgpdm resumed = node(data, on, again).model;
+      EXPECT_LT(told, batch ? 31 : 17);
+      EXPECT_TRUE(std::filesystem::is_empty(node.checkpoint));
+      if (optimiser == OptimiserKind::lbfgs && !batch) continue;  // begins with an empty memory
+      EXPECT_EQ(resumed.latents, whole.latents);
+      EXPECT_EQ(resumed.trace, whole.trace);
+    }
+}
+
+TEST(TrainMrd, KeepsToItsTimeLimit) {
+  for (const int batch : {0, 20}) {
+    TrainMrd node;
+    node.batch = batch;
+    node.iterations = node.epochs = 1000000;
+    node.hold_noise = 100;
+    node.time_limit = 0.2;
+    const Sgpdm model = trained(node, cut(shared_and_private(60, 1))).model;
+    EXPECT_EQ(model.ended, "time limit");
+    EXPECT_GT(model.iterations, 0);
+  }
+}
+
+TEST(TrainMrd, BothOptimisersRaiseTheBound) {
+  const StateData data = shared_and_private(60, 1);
+  TrainMrd node;
+  node.iterations = 300;
+  const Sgpdm scg = trained(node, data).model;
+  node.optimiser = OptimiserKind::lbfgs;
+  const Sgpdm lbfgs = trained(node, data).model;
+  EXPECT_GT(scg.log_likelihood, scg.trace[0] + 500);
+  EXPECT_NEAR(lbfgs.log_likelihood, scg.log_likelihood, 50);
 }
 
 TEST(TrainMrd, StopsWhenCancelled) {
@@ -261,7 +332,7 @@ TEST(TrainMrd, StopsWhenCancelled) {
 
 TEST(TrainMrd, ModelsServeSynthesis) {
   TrainMrd node;
-  node.iterations = 30;
+  node.iterations = 50;
   const Sgpdm model = trained(node, shared_and_private(60, 2)).model;
   ASSERT_TRUE(model.dynamics);
   const Eigen::MatrixXd audio = model.audio_frames.topRows(5);

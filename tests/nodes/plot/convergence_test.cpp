@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "nodes/types/gp_regression.h"
 #include "nodes/types/ssgpdm.h"
 
 namespace talkgraph {
@@ -63,6 +64,17 @@ TEST(Convergence, CountsWhyTrainingStopped) {
   EXPECT_THAT(table.rows, ElementsAre("converged", "iteration limit"));
   EXPECT_THAT(table.cells[0], ElementsAre(10, 4, 2));
   EXPECT_THAT(table.cells[1], ElementsAre(11, 4, 2));
+}
+
+TEST(Convergence, ShowsGaussianProcessRegression) {
+  GpRegression model;
+  model.frames = 2;
+  model.trace = {-16, -8, 0};
+  model.ended = "time limit";
+  const auto out = PlotConvergence{}(Value::of(model));
+  EXPECT_THAT(out.plot.svg, HasSubstr(">time limit</text>"));
+  EXPECT_THAT(out.plot.svg, HasSubstr("M0.0 0.0L126.0 75.0L252.0 150.0"));
+  EXPECT_THAT(out.table.cells[0], ElementsAre(1, 2, 2));
 }
 
 TEST(Convergence, EscapesLabelsAndRefusesWhatHasNoTrace) {

@@ -1,4 +1,4 @@
-#include "nodes/mapping/paired.h"
+#include "nodes/types/paired.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "nodes/yardstick/centred.h"
+#include "nodes/types/centred.h"
 
 #include <algorithm>
 #include <cmath>
