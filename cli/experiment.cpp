@@ -10,6 +10,7 @@
 #include "cli/signals.h"
 #include "experiment/crew.h"
 #include "experiment/page.h"
+#include "experiment/series.h"
 #include "graph/output_file.h"
 #include "runtime/forecast.h"
 #include "runtime/progress.h"
@@ -135,44 +136,82 @@ ExitCode tell_end(const std::vector<TrialResult>& results) {
   return success;
 }
 
-}  // namespace
+std::filesystem::path folder_of(const ExperimentCommand& command, const std::string& name) {
+  return command.run.folder.empty() ? std::filesystem::path("runs") / name : command.run.folder;
+}
 
-int run_experiment(const std::string& file, const ExperimentCommand& command, const Registry& registry) {
-  Diagnostics diagnostics;
-  const auto experiment = load_experiment(file, diagnostics);
-  const auto graphs = experiment ? load_trials(*experiment, registry, command.run.sets, diagnostics)
-                                 : std::optional<std::vector<Graph>>();
-  if (!graphs) {
-    fmt::print(stderr, "{}\n", diagnostics.str());
-    return usage;
-  }
-  const InterruptGuard guard;
-  const auto cache = open_cache(command.run);
-  if (command.dry_run) {
-    if (!cache) throw std::invalid_argument("--dry-run looks into the cache: not with --no-cache");
-    list_trials(*experiment, *graphs, *cache, guard.flag());
-    return success;
-  }
-  const auto folder =
-      command.run.folder.empty() ? std::filesystem::path("runs") / experiment->name : command.run.folder;
-  claim_folder(folder, file, command.run.overwrite);
-  std::vector<TrialResult> results;
-  const auto write = [&] { write_results(*experiment, *graphs, results, folder); };
-  Journal journal(*experiment, command.run.progress.value_or(usual_style()), write);
+/// Runs the trials of one experiment and writes its folder, whenever something has changed also `changed`.
+void run_trials_of(const Experiment& experiment, const std::vector<Graph>& graphs, const ExperimentCommand& command,
+                   const std::filesystem::path& folder, Cache* cache, const std::atomic<bool>* cancel,
+                   std::vector<TrialResult>& results, const std::function<void()>& changed) {
+  const auto write = [&] {
+    write_results(experiment, graphs, results, folder);
+    changed();
+  };
+  Journal journal(experiment, command.run.progress.value_or(usual_style()), write);
   CrewOptions options;
   options.threads = command.run.threads;
   options.memory = command.memory;
   options.keep_going = command.run.keep_going;
-  options.cache = cache.get();
+  options.cache = cache;
   options.folder = folder;
-  options.cancel = guard.flag();
+  options.cancel = cancel;
   options.on_change = [&](std::size_t trial, const TrialResult& result) { journal.changed(trial, result); };
   options.on_warning = [&](std::size_t trial, std::string_view message) { journal.warned(trial, message); };
-  run_trials(*experiment, *graphs, options, results);
+  run_trials(experiment, graphs, options, results);
   write();
-  for (const auto& missing : missing_measures(*experiment, estimate(*experiment, results))) journal.warn(missing);
+  for (const auto& missing : missing_measures(experiment, estimate(experiment, results))) journal.warn(missing);
+}
+
+int run_single(const std::string& file, const ExperimentCommand& command, const Registry& registry) {
+  Diagnostics diagnostics;
+  const auto experiment = load_experiment(file, diagnostics);
+  const auto graphs = experiment ? load_trials(*experiment, registry, command.run.sets, diagnostics)
+                                 : std::optional<std::vector<Graph>>();
+  if (!graphs) return fmt::print(stderr, "{}\n", diagnostics.str()), usage;
+  const InterruptGuard guard;
+  const auto cache = open_cache(command.run);
+  if (command.dry_run) return list_trials(*experiment, *graphs, *cache, guard.flag()), success;
+  const auto folder = folder_of(command, experiment->name);
+  claim_folder(folder, file, command.run.overwrite);
+  std::vector<TrialResult> results;
+  run_trials_of(*experiment, *graphs, command, folder, cache.get(), guard.flag(), results, [] {});
   fmt::print("{}\n", (folder / "experiment.html").string());
   return tell_end(results);
+}
+
+int run_series(const std::string& file, const ExperimentCommand& command, const Registry& registry) {
+  Diagnostics diagnostics;
+  auto series = load_series(file, registry, command.run.sets, diagnostics);
+  if (!series) return fmt::print(stderr, "{}\n", diagnostics.str()), usage;
+  const InterruptGuard guard;
+  const auto cache = open_cache(command.run);
+  const auto folder = folder_of(command, series->name);
+  if (!command.dry_run) claim_folder(folder, file, command.run.overwrite);
+  const auto write = [&] { write_file(folder / "report.html", series_page(*series)); };
+  std::vector<TrialResult> all;
+  for (auto& section : series->sections)
+    for (auto& [experiment, graphs, results] : section.parts) {
+      fmt::print(stderr, "{}\n", experiment.name);
+      if (command.dry_run)
+        list_trials(experiment, graphs, *cache, guard.flag());
+      else if (!*guard.flag())
+        run_trials_of(experiment, graphs, command, folder / experiment.name, cache.get(), guard.flag(), results, write);
+      results.resize(experiment.trials.size());
+      all.insert(all.end(), results.begin(), results.end());
+    }
+  if (command.dry_run) return success;
+  write();
+  fmt::print("{}\n", (folder / "report.html").string());
+  return tell_end(all);
+}
+
+}  // namespace
+
+int run_experiment(const std::string& file, const ExperimentCommand& command, const Registry& registry) {
+  if (command.dry_run && !command.run.cached)
+    throw std::invalid_argument("--dry-run looks into the cache: not with --no-cache");
+  return is_series(file) ? run_series(file, command, registry) : run_single(file, command, registry);
 }
 
 }  // namespace talkgraph::cli

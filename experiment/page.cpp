@@ -200,38 +200,60 @@ std::string figure_of(const Shown& shown, const std::string& label, const std::s
   return html_clip(label, artifact);
 }
 
-/// Of each output the items that most settings have, in their order.
-std::vector<std::pair<std::string, std::string>> items_to_show(const Experiment& experiment,
-                                                               const std::vector<TrialResult>& results) {
-  using Name = std::pair<std::string, std::string>;  // output, item
-  std::vector<Name> names;
-  std::map<Name, std::set<std::size_t>> settings;
+/// Clips under one heading.
+struct Group {
+  std::string heading;
+  struct Entry {
+    const Shown* shown;
+    std::string label;
+    const Trial* trial;
+  };
+  std::vector<Entry> entries;
+};
+
+/// What belongs together: the same item of an output by all settings, or, where there is one setting, of all outputs.
+/// Of each output the items that most groups have, in their order.
+std::vector<Group> groups_of(const Experiment& experiment, const std::vector<TrialResult>& results) {
+  const bool by_item = experiment.settings == 1;
+  std::vector<std::pair<std::string, std::string>> names;  // output (none where all are together), item
+  std::map<std::pair<std::string, std::string>, Group> groups;
+  std::set<std::tuple<std::string, std::string, std::size_t>> seen;
   for (std::size_t t = 0; t < results.size(); ++t)
     for (const auto& shown : results[t].shown) {
-      add_once(names, Name{shown.output, shown.item});
-      settings[{shown.output, shown.item}].insert(experiment.trials[t].setting);
+      const Trial& trial = experiment.trials[t];
+      if (!seen.insert({shown.output, shown.item, trial.setting}).second) continue;
+      const std::pair name(by_item && !shown.item.empty() ? "" : shown.output, shown.item);
+      add_once(names, name);
+      groups[name].heading = joined(name.first, name.second);
+      groups[name].entries.push_back(
+          {&shown, by_item ? shown.output : setting_text(experiment, trial.setting), &trial});
     }
   std::stable_sort(names.begin(), names.end(),
-                   [&](const Name& a, const Name& b) { return settings[a].size() > settings[b].size(); });
+                   [&](const auto& a, const auto& b) { return groups[a].entries.size() > groups[b].entries.size(); });
+  std::vector<Group> out;
   std::map<std::string, std::size_t> count;
-  std::erase_if(names, [&](const Name& name) { return count[name.first]++ >= most_items; });
-  return names;
+  for (const auto& name : names)
+    if (count[name.first]++ < most_items) out.push_back(std::move(groups[name]));
+  return out;
 }
 
-/// The same item of all settings beside each other.
-std::string clips(const Experiment& experiment, const std::vector<TrialResult>& results) {
+/// Starts all clips of the group below it, with the sound of the first.
+constexpr const char* play_all =
+    "<p><button type=\"button\" onclick=\"this.parentElement.nextElementSibling.querySelectorAll('video').forEach((v, "
+    "i) => { v.muted = i > 0; v.currentTime = 0; v.play(); })\">play all</button></p>\n";
+
+std::string clips(const Experiment& experiment, const std::vector<TrialResult>& results, const std::string& folder) {
   std::string out;
-  for (const auto& [output, item] : items_to_show(experiment, results)) {
-    out += fmt::format("<h3>{}</h3>\n<div class=\"clips\">\n", escape_markup(joined(output, item)));
-    std::set<std::size_t> settings;
-    for (std::size_t t = 0; t < results.size(); ++t)
-      for (const auto& shown : results[t].shown)
-        if (shown.output == output && shown.item == item && settings.insert(experiment.trials[t].setting).second)
-          out += figure_of(shown, setting_text(experiment, experiment.trials[t].setting),
-                           "trials/" + experiment.trials[t].name + "/");
-    out += "</div>\n";
+  for (const auto& group : groups_of(experiment, results)) {
+    std::string figures;
+    for (const auto& entry : group.entries)
+      figures += figure_of(*entry.shown, entry.label, folder + "trials/" + entry.trial->name + "/");
+    const auto first = figures.find("<video");
+    const bool several = first != std::string::npos && figures.find("<video", first + 1) != std::string::npos;
+    out += fmt::format("<h4>{}</h4>\n{}<div class=\"clips\">\n{}</div>\n", escape_markup(group.heading),
+                       several ? play_all : "", figures);
   }
-  return out.empty() ? "" : "<h2>Clips</h2>\n" + out;
+  return out;
 }
 
 std::string trial_table(const Experiment& experiment, const std::vector<Graph>& graphs,
@@ -297,9 +319,21 @@ std::vector<std::string> missing_measures(const Experiment& experiment, const st
   return missing;
 }
 
+std::string html_results(const Experiment& experiment, const std::vector<TrialResult>& results,
+                         const std::string& folder) {
+  const auto estimates = estimate(experiment, results);
+  std::string html;
+  if (!estimates.empty()) html += "<p>" + interval_note(estimates) + "</p>\n";
+  if (std::any_of(estimates.begin(), estimates.end(), [](const Estimate& e) { return e.partial; }))
+    html += "<p>* Without items that failed: see the runs.</p>\n";
+  for (const auto& missing : missing_measures(experiment, estimates)) html += "<p>" + escape_markup(missing) + "</p>\n";
+  for (const auto& of_output : by_output(estimates)) html += score_table(experiment, of_output);
+  for (const auto& plot : plot_estimates(experiment, estimates)) html += html_plot(plot);
+  return html + clips(experiment, results, folder);
+}
+
 std::string experiment_page(const Experiment& experiment, const std::vector<Graph>& graphs,
                             const std::vector<TrialResult>& results) {
-  const auto estimates = estimate(experiment, results);
   const auto finished = std::count_if(results.begin(), results.end(),
                                       [](const TrialResult& r) { return r.status == TrialResult::Status::finished; });
   std::string page = html_open(experiment.name, experiment.description);
@@ -307,13 +341,9 @@ std::string experiment_page(const Experiment& experiment, const std::vector<Grap
       "<p>{} of {} runs finished, of <code>{}</code>. All numbers: <a href=\"results.csv\">results.csv</a>, "
       "<a href=\"results.json\">results.json</a>; means: <a href=\"means.csv\">means.csv</a>.</p>\n",
       finished, results.size(), escape_markup(experiment.graph.filename().string()));
-  if (!estimates.empty()) page += "<h2>Scores</h2>\n<p>" + interval_note(estimates) + "</p>\n";
-  if (std::any_of(estimates.begin(), estimates.end(), [](const Estimate& e) { return e.partial; }))
-    page += "<p>* Without items that failed: see the runs below.</p>\n";
-  for (const auto& missing : missing_measures(experiment, estimates)) page += "<p>" + escape_markup(missing) + "</p>\n";
-  for (const auto& of_output : by_output(estimates)) page += score_table(experiment, of_output);
-  for (const auto& plot : plot_estimates(experiment, estimates)) page += html_plot(plot);
-  return page + clips(experiment, results) + trial_table(experiment, graphs, results) + html_close();
+  const std::string of_trials = html_results(experiment, results, "");
+  if (!of_trials.empty()) page += "<h2>Results</h2>\n" + of_trials;
+  return page + trial_table(experiment, graphs, results) + html_close();
 }
 
 void claim_folder(const std::filesystem::path& folder, const std::filesystem::path& file, bool overwrite) {

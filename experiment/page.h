@@ -15,6 +15,11 @@ std::vector<Plot> plot_estimates(const Experiment& experiment, const std::vector
 /// Complaints about measures that are to be plotted and that no output has.
 std::vector<std::string> missing_measures(const Experiment& experiment, const std::vector<Estimate>& estimates);
 
+/// Scores, plots and clips beside each other, part of a page from which the experiment's files are seen in `folder`
+/// ("table-6-1/"; empty: beside the page).
+std::string html_results(const Experiment& experiment, const std::vector<TrialResult>& results,
+                         const std::string& folder);
+
 /// The page that compares the trials: scores, plots, clips beside each other, what differed, how each trial went.
 std::string experiment_page(const Experiment& experiment, const std::vector<Graph>& graphs,
                             const std::vector<TrialResult>& results);

@@ -64,9 +64,22 @@ Json experiment_schema() {
         {{"description", "seeds of the repeats"}, {"type", "array"}, {"items", whole(0)}, {"uniqueItems", true}}},
        {"tabulate", names("outputs of the graph that are tables or scores")},
        {"plot", names("measures to plot; all if not given")},
-       {"show", names("outputs with clips or pictures that the page shows beside each other")}},
+       {"show", names("outputs with clips or pictures that the page shows beside each other")},
+       {"sections",
+        {{"description", "of a series: experiments run one after the other, told of on one page"},
+         {"type", "array"},
+         {"minItems", 1},
+         {"items", object({{"title", text("heading of the section")},
+                           {"text", text("what it shows; paragraphs stand apart by empty lines")},
+                           {"table",
+                            {{"description", "a table of texts"},
+                             {"allOf",
+                              {object({{"columns", names("their headings")},
+                                       {"rows", object_of({{"type", "array"}, {"items", {{"type", "string"}}}})}},
+                                      {"columns", "rows"})}}}},
+                           {"experiments", names("files of the experiments whose results it has")}})}}}},
       {}));
-  schema["anyOf"] = {{{"required", {"graph", "tabulate"}}}, {{"required", {"extends"}}}};
+  schema["anyOf"] = {{{"required", {"graph", "tabulate"}}}, {{"required", {"extends"}}}, {{"required", {"sections"}}}};
   schema["definitions"] = std::move(definitions);
   return schema;
 }

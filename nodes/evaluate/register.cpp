@@ -2,6 +2,7 @@
 
 #include "nodes/evaluate/alignment.h"
 #include "nodes/evaluate/compare.h"
+#include "nodes/evaluate/curves.h"
 #include "nodes/evaluate/explained.h"
 #include "nodes/evaluate/mouth_lag.h"
 #include "nodes/evaluate/mouth_opening.h"
@@ -18,6 +19,7 @@ void register_evaluate(Registry& registry) {
   registry.add<ScoreAlignment>();
   registry.add<Compare>();
   registry.add<Explained>();
+  registry.add<TakeCurves>();
   registry.add<MouthLag>();
   registry.add<MouthOpening>();
   registry.add<ComparePictures>();

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "cli/look.h"
-#include "experiment/experiment.h"
+#include "experiment/series.h"
 #include "graph/differences.h"
 #include "nodes/all_nodes.h"
 #include "tests/temporary_folder.h"
@@ -38,6 +38,10 @@ TEST(Experiments, AreSound) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(TALKGRAPH_SOURCE_DIR "/pipelines/experiments")) {
     Diagnostics diagnostics;
+    if (is_series(entry.path())) {
+      EXPECT_TRUE(load_series(entry.path(), registry, {}, diagnostics)) << diagnostics.str();
+      continue;
+    }
     const auto experiment = load_experiment(entry.path(), diagnostics);
     EXPECT_TRUE(experiment && load_trials(*experiment, registry, {}, diagnostics)) << diagnostics.str();
     ++count;

@@ -4,6 +4,7 @@
 
 #include "graph/random.h"
 #include "nodes/evaluate/compare.h"
+#include "nodes/evaluate/curves.h"
 #include "nodes/evaluate/mouth_lag.h"
 #include "nodes/evaluate/mouth_opening.h"
 #include "nodes/evaluate/score.h"
@@ -108,6 +109,21 @@ TEST(SequenceTable, HasARowASequence) {
   EXPECT_EQ(t.cells[0], (std::vector<double>{2, 1}));
   EXPECT_TRUE(std::isnan(t.cells[1][0]));
   EXPECT_TRUE(SequenceTable{}({}).rows.empty());
+}
+
+TEST(TakeCurves, AveragesOverParametersOrTakesOne) {
+  Track a, b;
+  a.values = Eigen::MatrixXd{{1, 3}, {5, 9}};
+  a.names = {"left", "right"};
+  b.values = Eigen::MatrixXd{{2, 0}};
+  const Curves mean = TakeCurves{}({{"a", a}, {"b", b}});
+  EXPECT_EQ(mean.keys, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(mean.curves[0].values, (Eigen::MatrixXd{{2}, {7}}));
+  EXPECT_TRUE(mean.curves[0].names.empty());
+  EXPECT_EQ(TakeCurves{1}({{"a", a}}).curves[0].values, (Eigen::MatrixXd{{3}, {9}}));
+  EXPECT_TRUE(TakeCurves{}({}).keys.empty());
+  EXPECT_THROW(TakeCurves{2}({{"a", a}}), std::runtime_error);
+  EXPECT_THROW(TakeCurves{}({{"none", Track{}}}), std::runtime_error);
 }
 
 TEST(Compare, StacksRowsUnderTheirNames) {

@@ -85,14 +85,14 @@ TEST(PlotBars, DrawsColumnsOfATable) {
   }
 }
 
-TEST(PlotTrajectories, ShowsTheFirstSequencesThatBothHave) {
-  const Plot p =
-      PlotTrajectories{.sequences = 1}({{"lost", constant(5, 0)}, {"x", constant(5, 1)}, {"y", constant(5, 1)}},
-                                       {{"x", constant(5, 2)}, {"y", constant(5, 2)}});
-  EXPECT_THAT(p.svg, HasSubstr(">x<"));
+TEST(PlotTrajectories, ShowsTheFirstSequencesThatAllHave) {
+  const Curves recorded{{"lost", "x", "y"}, {constant(5, 0), constant(5, 1), constant(5, 1)}};
+  const Curves one{{"x", "y"}, {constant(5, 2), constant(5, 2)}}, other{{"y", "x"}, {constant(5, 3), constant(5, 3)}};
+  const Plot p = PlotTrajectories{.sequences = 1}({{"recorded", recorded}, {"ridge", one}, {"HMM", other}});
+  for (const char* shown : {">x<", ">recorded<", ">ridge<", ">HMM<"}) EXPECT_THAT(p.svg, HasSubstr(shown));
   EXPECT_THAT(p.svg, Not(HasSubstr("lost")));
   EXPECT_THAT(p.svg, Not(HasSubstr(">y<")));
-  EXPECT_THAT(PlotTrajectories{}({}, {}).svg, HasSubstr("</svg>"));
+  EXPECT_THAT(PlotTrajectories{}({}).svg, HasSubstr("</svg>"));
 }
 
 TEST(Svg, EscapesMarkup) { EXPECT_EQ(escape_markup("<a & \"b\">"), "&lt;a &amp; &quot;b&quot;&gt;"); }

@@ -1,0 +1,62 @@
+#include "cli/experiment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/experiment/scored_nodes.h"
+#include "tests/temporary_folder.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class SeriesCommand : public testing::Test {
+ protected:
+  SeriesCommand() {
+    folder_.write("graph.json", test::scored_graph);
+    folder_.write("one.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "show": ["files"] })");
+    folder_.write("two.json", R"({ "graph": "graph.json", "description": "Slopes", "tabulate": ["scores"],
+                                   "vary": { "scale": [1, 2] } })");
+  }
+  std::string series(const std::string& sections) {
+    return folder_.write("story.json", R"({ "description": "A story", "sections": [)" + sections + "] }");
+  }
+  int run(const std::string& file) {
+    cli::ExperimentCommand command;
+    command.run.folder = folder_.path() / "out";
+    command.run.progress = ProgressStyle::quiet;
+    return cli::run_experiment(file, command, test::scored_registry());
+  }
+
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(SeriesCommand, RunsAllAndTellsOfThemOnOnePage) {
+  const auto file = series(R"({ "title": "First <1>", "text": "Once.\n\nTwice.", "experiments": ["one.json"] },
+                              { "title": "Second", "experiments": ["two.json"] }, { "title": "End", "text": "So.", "table": { "columns": ["<a>"], "rows": { "r": ["x & y"] } } })");
+  EXPECT_EQ(run(file), 0);
+  const auto page = folder_.read("out/report.html");
+  for (const char* text : {"<p>A story</p>", "<h2>First &lt;1&gt;</h2>\n<p>Once.</p>\n<p>Twice.</p>", "<h2>Second</h2>",
+                           "Slopes", "two/experiment.html", "one/trials/run/pictures/1.svg", "<h2>End</h2>\n<p>So.</p>",
+                           "<th scope=\"col\" class=\"text\">&lt;a&gt;</th>", "<td class=\"text\">x &amp; y</td>"})
+    EXPECT_THAT(page, HasSubstr(text));
+  EXPECT_THAT(page, Not(HasSubstr("so far")));
+  EXPECT_THAT(folder_.read("out/two/results.csv"), HasSubstr("scale"));
+}
+
+TEST_F(SeriesCommand, AnExperimentThatFailsDoesNotStopTheOthers) {
+  folder_.write("bad.json", R"({ "graph": "graph.json", "tabulate": ["scores"],
+                                 "set": { "nodes.score.params.fail_on": 2 } })");
+  const auto file = series(R"({ "title": "All", "experiments": ["bad.json", "one.json"] })");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run(file), 1);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("this number is not liked"));
+  const auto page = folder_.read("out/report.html");
+  EXPECT_THAT(page, HasSubstr("0 of 1 runs finished so far"));
+  EXPECT_THAT(page, HasSubstr("one/trials/run"));
+}
+
+}  // namespace
+}  // namespace talkgraph

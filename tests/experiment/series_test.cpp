@@ -1,0 +1,68 @@
+#include "experiment/series.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/experiment/scored_nodes.h"
+#include "tests/temporary_folder.h"
+
+namespace talkgraph {
+namespace {
+
+using testing::HasSubstr;
+
+class SeriesTest : public testing::Test {
+ protected:
+  SeriesTest() {
+    folder_.write("graph.json", test::scored_graph);
+    folder_.write("one.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "show": ["files"] })");
+    folder_.write("two.json", R"({ "graph": "graph.json", "description": "Slopes", "tabulate": ["scores"],
+                                   "vary": { "scale": [1, 2] } })");
+  }
+  std::string series(const std::string& sections) {
+    return folder_.write("story.json", R"({ "description": "A story", "sections": [)" + sections + "] }");
+  }
+  std::string complaint(const std::string& sections, const std::vector<std::string>& sets = {}) {
+    Diagnostics diagnostics;
+    EXPECT_FALSE(load_series(series(sections), registry_, sets, diagnostics));
+    return diagnostics.str();
+  }
+
+  const Registry registry_ = test::scored_registry();
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(SeriesTest, IsToldFromAnExperiment) {
+  EXPECT_TRUE(is_series(series("")));
+  EXPECT_FALSE(is_series(folder_.file("one.json")));
+  EXPECT_FALSE(is_series(folder_.write("broken.json", "{ \"sections\": [")));
+  EXPECT_FALSE(is_series(folder_.file("not there.json")));
+  EXPECT_FALSE(is_series(folder_.path()));
+}
+
+TEST_F(SeriesTest, ChangesGoToTheGraphsThatHaveWhatTheySet) {
+  folder_.write("plain.json", R"({ "nodes": { "items": { "type": "test.items" },
+      "score": { "type": "test.score", "in": { "number": "items" } } }, "outputs": { "scores": "score.scores" } })");
+  folder_.write("three.json", R"({ "graph": "plain.json", "tabulate": ["scores"] })");
+  const std::string sections = R"({ "title": "Both", "experiments": ["one.json", "three.json"] })";
+  Diagnostics diagnostics;
+  const auto both = load_series(series(sections), registry_, {"scale=5"}, diagnostics);
+  ASSERT_TRUE(both) << diagnostics.str();
+  EXPECT_EQ(both->sections[0].parts[0].graphs[0].resolved["nodes"]["score"]["params"]["scale"], 5);
+  EXPECT_FALSE(both->sections[0].parts[1].graphs[0].resolved["nodes"]["score"].contains("params"));
+  EXPECT_THAT(complaint(sections, {"scal=5"}), HasSubstr("scal"));
+}
+
+TEST_F(SeriesTest, MistakesAreLocated) {
+  EXPECT_THAT(complaint(""), HasSubstr("at least one section"));
+  EXPECT_THAT(complaint(R"({ "titel": "x" })"), HasSubstr("did you mean \"title\""));
+  EXPECT_THAT(complaint(R"({ "experiments": "one.json" })"), HasSubstr("a list of files"));
+  EXPECT_THAT(complaint(R"({ "experiments": ["none.json"] })"), HasSubstr("none.json: cannot be read"));
+  EXPECT_THAT(complaint(R"({ "experiments": ["one.json", "one.json"] })"), HasSubstr("two experiments are called"));
+  EXPECT_THAT(complaint(R"({ "table": { "columns": ["a", "b"], "rows": { "x": ["1"] } } })"),
+              HasSubstr("row \"x\" has 1 cells in 2 columns"));
+  EXPECT_THAT(complaint(R"({ "experiments": [3] })"), HasSubstr("story.json:1:"));
+}
+
+}  // namespace
+}  // namespace talkgraph
