@@ -5,47 +5,48 @@
 #include "nodes/types/visemes.h"
 
 namespace talkgraph {
-namespace {
-
-/// Index in the sorted alphabet, -1 for an unknown phone.
-std::int64_t symbol(const Vlmm& vlmm, const std::string& phone) {
-  const auto it = std::lower_bound(vlmm.alphabet.begin(), vlmm.alphabet.end(), phone);
-  return it != vlmm.alphabet.end() && *it == phone ? it - vlmm.alphabet.begin() : -1;
-}
-
-}  // namespace
-
-std::vector<Unit> units(const std::vector<std::string>& phones, bool runs) {
+std::vector<Unit> units(const std::vector<std::string>& symbols, bool runs) {
   std::vector<Unit> all;
-  for (std::size_t t = 0; t < phones.size(); ++t) {
-    const bool joins = runs || is_end_pause(phones[t]);
-    if (joins && !all.empty() && all.back().phone == phones[t])
+  for (std::size_t t = 0; t < symbols.size(); ++t) {
+    const bool joins = runs || is_end_pause(symbols[t]);
+    if (joins && !all.empty() && all.back().symbol == symbols[t])
       ++all.back().length;
     else
-      all.push_back({phones[t], static_cast<std::int64_t>(t), 1});
+      all.push_back({symbols[t], static_cast<std::int64_t>(t), 1});
   }
   return all;
 }
 
-AutomatonReader::Step AutomatonReader::read(const std::string& phone) {
-  const auto s = symbol(vlmm_, phone);
-  if (s < 0) {
-    state_ = 0;
-    return {phone, 0};
-  }
-  const auto at = static_cast<std::size_t>(s);
+std::vector<std::string> symbols(std::vector<std::string> phones, bool visemes) {
+  if (visemes)
+    for (auto& phone : phones)
+      if (!is_end_pause(phone)) phone = viseme_label(phone).value_or(phone);
+  return phones;
+}
+
+std::vector<Unit> units(const Vlmm& vlmm, const std::vector<std::string>& phones) {
+  return units(symbols(phones, vlmm.visemes), !vlmm.repeating);
+}
+
+std::int64_t index_of(const Vlmm& vlmm, const std::string& symbol) {
+  const auto it = std::lower_bound(vlmm.alphabet.begin(), vlmm.alphabet.end(), symbol);
+  return it != vlmm.alphabet.end() && *it == symbol ? it - vlmm.alphabet.begin() : -1;
+}
+
+std::size_t state_after(const Vlmm& vlmm, std::size_t state, std::int64_t symbol) {
+  if (symbol < 0) return 0;
+  const auto at = static_cast<std::size_t>(symbol);
+  const auto next = vlmm.states[state].next[at];
+  return static_cast<std::size_t>(std::max<std::int64_t>(next >= 0 ? next : vlmm.states[0].next[at], 0));
+}
+
+AutomatonReader::Step AutomatonReader::read(const std::string& symbol) {
+  const auto s = index_of(vlmm_, symbol);
   const auto& before = vlmm_.states[state_];
-  Step step{phone, 0};
-  auto next = before.next[at];
-  if (next >= 0) {
-    std::string memory;
-    for (const auto m : before.memory) memory += vlmm_.alphabet[static_cast<std::size_t>(m)] + "-";
-    step = {memory + phone, before.probability[at]};
-  } else {
-    next = vlmm_.states[0].next[at];
-  }
-  state_ = static_cast<std::size_t>(std::max<std::int64_t>(next, 0));
-  return step;
+  state_ = state_after(vlmm_, state_, s);
+  if (s < 0 || before.next[static_cast<std::size_t>(s)] < 0) return {symbol, 0};
+  const std::string memory = memory_label(vlmm_, before.memory);
+  return {memory + (memory.empty() ? "" : "-") + symbol, before.probability[static_cast<std::size_t>(s)]};
 }
 
 std::string state_label(const Vlmm& vlmm, const std::string& context) {

@@ -9,13 +9,26 @@ namespace talkgraph {
 
 /// A stretch of frames that is one symbol of a Markov model.
 struct Unit {
-  std::string phone;
+  std::string symbol;
   std::int64_t start = 0, length = 1;  ///< frames
 };
 
-/// The symbols of a phone-per-frame stream: its frames, or its runs of equal frames. A pause at
+/// The symbols of a stream's frames, or of its runs of equal frames. A pause at
 /// an end (is_end_pause) is always one.
-std::vector<Unit> units(const std::vector<std::string>& phones, bool runs);
+std::vector<Unit> units(const std::vector<std::string>& symbols, bool runs);
+
+/// The phones of frames, or their visemes; pauses at an end and what is no phone stay as they are.
+std::vector<std::string> symbols(std::vector<std::string> phones, bool visemes);
+
+/// A stream of phones as a model reads it.
+std::vector<Unit> units(const Vlmm& vlmm, const std::vector<std::string>& phones);
+
+/// Index in the alphabet, -1 for an unknown symbol.
+std::int64_t index_of(const Vlmm& vlmm, const std::string& symbol);
+
+/// The state after a symbol (-1: an unknown one, which clears the memory). Without a transition for it the memory
+/// restarts with the symbol.
+std::size_t state_after(const Vlmm& vlmm, std::size_t state, std::int64_t symbol);
 
 /// Walks the automaton along a stream of symbols, from the empty memory.
 class AutomatonReader {
@@ -23,13 +36,10 @@ class AutomatonReader {
   explicit AutomatonReader(const Vlmm& vlmm) : vlmm_(vlmm) {}
 
   struct Step {
-    std::string label;       ///< the memory before the phone, and the phone
-    double probability = 0;  ///< of the phone after that memory; 0 if there is no transition
+    std::string label;       ///< the memory before the symbol, and the symbol; without a transition the symbol alone
+    double probability = 0;  ///< of the symbol after that memory; 0 if there is no transition
   };
-  /// Reads a phone. Without a transition for it the label is the phone alone
-  /// and the memory restarts with it; an unknown phone or a pause at an end
-  /// clears the memory.
-  Step read(const std::string& phone);
+  Step read(const std::string& symbol);
 
  private:
   const Vlmm& vlmm_;

@@ -8,8 +8,9 @@ FrameLabels ContextDecode::operator()(const Vlmm& vlmm, const FrameLabels& label
   FrameLabels contexts;
   contexts.rate = labels.rate;
   AutomatonReader reader(vlmm);
-  for (const auto& unit : units(labels.labels, !vlmm.repeating))
-    contexts.labels.insert(contexts.labels.end(), static_cast<std::size_t>(unit.length), reader.read(unit.phone).label);
+  for (const auto& unit : units(vlmm, labels.labels))
+    contexts.labels.insert(contexts.labels.end(), static_cast<std::size_t>(unit.length),
+                           reader.read(unit.symbol).label);
   return contexts;
 }
 

@@ -7,12 +7,14 @@
 
 namespace talkgraph {
 
-/// How well a Markov model predicts other phone streams (thesis Eqns 5.25 and
-/// 5.26), as a table of one row:
+/// How well a Markov model predicts other phone streams (thesis Eqns 5.25 to
+/// 5.27), as a table of one row:
 ///   perplexity  2^H
-///   entropy     H = −1/N Σ log₂ max(P(σ_n | s_{n−1}), floor), bits a symbol
+///   entropy     H = −1/N Σ log₂ max(P(σ_n | s_{n−1}), floor), bits a symbol, s_0 being the empty memory
+///   best_path   the same along the likeliest path. What went before a stream is unknown, so it may begin in any
+///               memory; from there on the automaton is deterministic, and each beginning is one path
 ///   missed      share of the symbols for which there was no transition
-///   symbols     N: frames, or runs, as the model was trained on
+///   symbols     N: frames, or runs, as the model was trained on; pauses at an end do not count
 ///   memories, labels  of the model: kept memories, trainable labels
 /// Throws std::runtime_error if there is no symbol.
 struct ContextPerplexity {

@@ -1,7 +1,9 @@
 #include "nodes/context/register.h"
 
 #include "nodes/context/decode.h"
+#include "nodes/context/inspect.h"
 #include "nodes/context/perplexity.h"
+#include "nodes/context/sample.h"
 #include "nodes/context/segment.h"
 #include "nodes/context/train.h"
 #include "nodes/context/windows.h"
@@ -11,9 +13,11 @@ namespace talkgraph {
 void register_context(Registry& registry) {
   registry.add<ContextDecode>();
   registry.add<ContextPerplexity>();
+  registry.add<ContextSample>();
   registry.add<ContextSegment>();
   registry.add<ContextTrain>();
   registry.add<ContextWindows>();
+  registry.add<InspectContexts>();
 }
 
 }  // namespace talkgraph

@@ -22,19 +22,23 @@ std::string fitting_label(const Vlmm& vlmm, const std::string& context, std::int
 SegmentTrack ContextSegment::operator()(const Vlmm& vlmm, const FrameLabels& contexts) const {
   const auto frames = static_cast<std::int64_t>(contexts.labels.size());
   if (states == StateKind::one && frames > 0) return {{{one_state, 0, frames}}, frames, contexts.rate};
-  std::vector<std::string> phones;
-  for (const auto& context : contexts.labels) phones.push_back(last_phone(context));
-  const auto parts = units(phones, states == StateKind::phones || !vlmm.repeating);
+  std::vector<std::string> symbols;
+  for (const auto& context : contexts.labels) symbols.push_back(last_phone(context));
+  const auto parts = units(symbols, states == StateKind::phones || !vlmm.repeating);
 
   std::vector<Segment> backwards;
   for (auto end = static_cast<std::int64_t>(parts.size()); end > 0;) {
     const Unit& last = parts[static_cast<std::size_t>(end - 1)];
     const std::string& context =
-        states == StateKind::phones ? last.phone : contexts.labels[static_cast<std::size_t>(last.start)];
+        states == StateKind::phones ? last.symbol : contexts.labels[static_cast<std::size_t>(last.start)];
     const std::string label = fitting_label(vlmm, context, end);
     end -= length_of(label);
     const auto start = parts[static_cast<std::size_t>(end)].start;
-    backwards.push_back({label, start, last.start + last.length - start});
+    const auto length = last.start + last.length - start;
+    if (merge && !backwards.empty() && backwards.back().label == label)
+      backwards.back() = {label, start, length + backwards.back().length};
+    else
+      backwards.push_back({label, start, length});
   }
   return {{backwards.rbegin(), backwards.rend()}, frames, contexts.rate};
 }
@@ -47,6 +51,7 @@ void describe(Description<ContextSegment>& d) {
       .input("contexts", "context of each frame")
       .output("segments", "they cover every frame");
   d.param("states", &ContextSegment::states).doc("what a state stands for; as in context.windows");
+  d.param("merge", &ContextSegment::merge).doc("neighbours of one label become one segment");
 }
 
 }  // namespace talkgraph

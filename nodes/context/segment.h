@@ -26,8 +26,10 @@ inline constexpr EnumNames<StateKind, 3> enum_names<StateKind>{
 /// frame a label that is too long loses its oldest phones. A phone unknown to
 /// the model becomes the commonest of its viseme. With phones as states,
 /// segments are the runs of each phone; with one state, the utterance is one segment.
+/// With `merge` neighbours of one label become one segment, as where the source compares labels only.
 struct ContextSegment {
   StateKind states = StateKind::contexts;
+  bool merge = false;
 
   SegmentTrack operator()(const Vlmm& vlmm, const FrameLabels& contexts) const;
 };

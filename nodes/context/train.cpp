@@ -52,6 +52,11 @@ class Learner {
       for (auto& x : p) x /= sum;
     return p;
   }
+  double end(int node) const {
+    std::int64_t followed = 0;
+    for (int c = tree_[node].first_child; c >= 0; c = tree_[c].sibling) followed += tree_[c].count;
+    return 1 - static_cast<double>(followed) / static_cast<double>(tree_[node].count);
+  }
   double gain(int node) const { return share(node) * divergence(next(node), next(tree_[node].suffix)); }
 
   std::vector<int> sorted_memories() const {
@@ -68,7 +73,7 @@ class Learner {
       state_[static_cast<std::size_t>(nodes[i])] = static_cast<std::int64_t>(i);
     std::vector<Vlmm::State> states;
     for (const int node : nodes) {
-      Vlmm::State state{tree_.string(node), next(node), Symbols(symbols_, -1)};
+      Vlmm::State state{tree_.string(node), next(node), Symbols(symbols_, -1), end(node)};
       for (int c = tree_[node].first_child; c >= 0; c = tree_[c].sibling) {
         if (!survives(c)) continue;
         int longest = c;
@@ -93,23 +98,34 @@ struct Streams {
   std::vector<Symbols> symbols;
 };
 
-Streams read(const Collected<FrameLabels>& labels, bool runs) {
-  Streams streams;
-  std::set<std::string> phones;
-  for (std::size_t i = 0; i < labels.size(); ++i) phones.insert(labels[i].labels.begin(), labels[i].labels.end());
+/// Throws if they cannot be symbols.
+void check(const std::set<std::string>& phones, bool visemes) {
   if (phones.empty())
     throw std::runtime_error("contexts cannot be learnt from no frame: is the training selection empty?");
-  for (const auto& phone : phones)
+  for (const auto& phone : phones) {
     if (phone.empty() || phone.find('-') != std::string::npos)
       throw std::runtime_error("\"" + phone + "\" cannot be a phone: '-' joins the phones of a context");
-  streams.alphabet.assign(phones.begin(), phones.end());
+    if (visemes && !is_phone(phone))
+      throw std::runtime_error("\"" + phone + "\" is neither a CMU nor a BEEP phone, so it has no viseme");
+  }
+}
+
+Streams read(const Collected<FrameLabels>& labels, const Vlmm& vlmm) {
+  Streams streams;
+  std::set<std::string> phones, alphabet;
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    streams.units.push_back(units(labels[i].labels, runs));
+    phones.insert(labels[i].labels.begin(), labels[i].labels.end());
+    streams.units.push_back(units(vlmm, labels[i].labels));
+    for (const auto& unit : streams.units.back()) alphabet.insert(unit.symbol);
+  }
+  check(phones, vlmm.visemes);
+  streams.alphabet.assign(alphabet.begin(), alphabet.end());
+  for (const auto& stream : streams.units) {
     Symbols utterance;
-    for (const auto& unit : streams.units.back()) {
+    for (const auto& unit : stream) {
       const auto symbol =
-          std::lower_bound(streams.alphabet.begin(), streams.alphabet.end(), unit.phone) - streams.alphabet.begin();
-      if (is_end_pause(unit.phone))
+          std::lower_bound(streams.alphabet.begin(), streams.alphabet.end(), unit.symbol) - streams.alphabet.begin();
+      if (is_end_pause(unit.symbol))
         streams.symbols.push_back({symbol});
       else
         utterance.push_back(symbol);
@@ -122,26 +138,25 @@ Streams read(const Collected<FrameLabels>& labels, bool runs) {
 std::int64_t windows_of(const PrefixTree& tree, const Vlmm& v, const std::vector<std::string>& phones,
                         std::size_t from) {
   int node = 0;
-  for (std::size_t i = from; i < phones.size() && node >= 0; ++i)
-    node = tree.child(node, std::lower_bound(v.alphabet.begin(), v.alphabet.end(), phones[i]) - v.alphabet.begin());
+  for (std::size_t i = from; i < phones.size() && node >= 0; ++i) node = tree.child(node, index_of(v, phones[i]));
   return node < 0 ? 0 : tree[node].count;
 }
 
 }  // namespace
 
 Vlmm ContextTrain::operator()(const Collected<FrameLabels>& labels) const {
-  const Streams streams = read(labels, !repeating);
-  PrefixTree tree(order + 1);
-  for (const auto& stream : streams.symbols) tree.add(stream);
-
   Vlmm v;
   v.order = order;
   v.repeating = repeating;
+  v.visemes = symbols == SymbolKind::visemes;
+  const Streams streams = read(labels, v);
   v.alphabet = streams.alphabet;
+  PrefixTree tree(order + 1);
+  for (const auto& stream : streams.symbols) tree.add(stream);
   v.states = Learner(tree, v.alphabet.size(), prune, keep).states(order);
   for (const auto& stream : streams.units) {
     AutomatonReader reader(v);
-    for (const auto& unit : stream) v.occupancy[reader.read(unit.phone).label] += unit.length;
+    for (const auto& unit : stream) v.occupancy[reader.read(unit.symbol).label] += unit.length;
   }
   for (const auto& phone : v.alphabet) v.windows[phone] = windows_of(tree, v, {phone}, 0);
   for (const auto& [label, frames] : v.occupancy) {
@@ -170,6 +185,7 @@ void describe(Description<ContextTrain>& d) {
   d.param("min_windows", &ContextTrain::min_windows)
       .at_least(1)
       .doc("labels with fewer training windows are mapped to a suffix");
+  d.param("symbols", &ContextTrain::symbols).doc("what contexts are of; decode, segment and windows follow the model");
   d.param("repeating", &ContextTrain::repeating).doc("a symbol a frame; false: a symbol a run of equal frames");
 }
 

@@ -6,6 +6,15 @@
 
 namespace talkgraph {
 
+/// What a Markov model reads its streams as.
+enum class SymbolKind {
+  phones,
+  visemes  ///< phones as visemes, Table 2.1 of the thesis
+};
+template <>
+inline constexpr EnumNames<SymbolKind, 2> enum_names<SymbolKind>{
+    {{SymbolKind::phones, "phones"}, {SymbolKind::visemes, "visemes"}}};
+
 /// Learns a variable length Markov model from phone-per-frame streams (docs/method.md §5,
 /// thesis §5.2.1, Algorithm 3).
 ///
@@ -28,13 +37,14 @@ namespace talkgraph {
 ///
 /// Trainable are the longest suffix with at least `min_windows` windows of each
 /// label met in training, and every phone. Throws std::runtime_error if there
-/// is no frame, or a label holds '-'.
+/// is no frame, a label holds '-', or what is no phone is to be a viseme.
 struct ContextTrain {
   int order = 6;          ///< N, longest memory, symbols
   double prune = 0;       ///< ε_p
   double keep = 4e-4;     ///< ε_s, nats
   int min_windows = 5;    ///< rarer labels are mapped to a suffix
   bool repeating = true;  ///< a symbol a frame; false: a symbol a run of equal frames
+  SymbolKind symbols = SymbolKind::phones;
 
   Vlmm operator()(const Collected<FrameLabels>& labels) const;
 };

@@ -32,7 +32,7 @@ struct State {
 };
 
 std::vector<Sequence> pair_up(const Collected<FrameLabels>& labels, const Collected<Track>& audio,
-                              const Collected<Track>& visual, bool runs, bool gaps) {
+                              const Collected<Track>& visual, bool visemes, bool runs, bool gaps) {
   std::vector<Sequence> sequences;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const Track* a = audio.find(labels.key(i));
@@ -45,7 +45,8 @@ std::vector<Sequence> pair_up(const Collected<FrameLabels>& labels, const Collec
       throw std::runtime_error(labels.key(i) + ": " + std::to_string(n) + " labels, " + std::to_string(a->frames()) +
                                " audio frames, " + std::to_string(v->frames()) +
                                " visual frames; bring all to one rate");
-    sequences.push_back({shortest, units({phones.begin(), phones.begin() + shortest}, runs), a, v, {}});
+    sequences.push_back(
+        {shortest, units(symbols({phones.begin(), phones.begin() + shortest}, visemes), runs), a, v, {}});
     if (!gaps) sequences.back().cuts = v->lost;
   }
   if (sequences.empty())
@@ -81,7 +82,7 @@ void add_windows(const std::vector<Sequence>& sequences, std::map<std::string, S
       const auto stop = parts[end - 1].start + parts[end - 1].length;
       for (std::size_t first = end; first > 0 && end - first < longest; --first) {
         const Unit& oldest = parts[first - 1];
-        label = oldest.phone + (label.empty() ? "" : "-") + label;
+        label = oldest.symbol + (label.empty() ? "" : "-") + label;
         if (has_cut(sequences[s], oldest.start, stop)) break;
         if (const auto it = states.find(label); it != states.end())
           it->second.windows.push_back({s, oldest.start, stop - oldest.start});
@@ -145,7 +146,8 @@ StateData cut(const State& state, const std::vector<Sequence>& sequences) {
 Stream<StateData> ContextWindows::operator()(const Vlmm& vlmm, const Collected<FrameLabels>& labels,
                                              const Collected<Track>& audio, const Collected<Track>& visual) const {
   const bool runs = states == StateKind::phones || !vlmm.repeating;
-  auto sequences = std::make_shared<const std::vector<Sequence>>(pair_up(labels, audio, visual, runs, gaps));
+  auto sequences =
+      std::make_shared<const std::vector<Sequence>>(pair_up(labels, audio, visual, vlmm.visemes, runs, gaps));
   auto by_label = states_of(vlmm, states);
   if (states == StateKind::one)
     add_utterances(*sequences, by_label[one_state]);

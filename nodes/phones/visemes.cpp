@@ -9,12 +9,12 @@ namespace talkgraph {
 PhoneTrack ToVisemes::operator()(const PhoneTrack& phones) const {
   PhoneTrack visemes = phones;
   for (auto& interval : visemes.phones) {
-    const auto number = viseme(interval.label);
-    if (!number)
+    const auto label = viseme_label(interval.label);
+    if (!label)
       throw std::runtime_error(
           "\"" + interval.label +
           "\" is neither a CMU nor a BEEP phone (lower case, without stress), so it has no viseme");
-    interval.label = *number ? std::to_string(*number) : "sil";
+    interval.label = *label;
   }
   return visemes;
 }

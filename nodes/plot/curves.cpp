@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "nodes/plot/svg.h"
@@ -20,7 +21,8 @@ Plot PlotCurves::operator()(const Table& table) const {
     auto& line = panel.series.emplace_back(Series{name, {}, {}});
     for (std::size_t r = 0; r < table.cells.size(); ++r) {
       line.x.push_back(static_cast<double>(r + 1));
-      line.y.push_back(table.cells[r][static_cast<std::size_t>(column)]);
+      const double value = table.cells[r][static_cast<std::size_t>(column)];
+      line.y.push_back(!log10 ? value : value > 0 ? std::log10(value) : NAN);
     }
   }
   const auto& heading = title.empty() ? table.title : title;
@@ -33,6 +35,7 @@ void describe(Description<PlotCurves>& d) {
   d.param("columns", &PlotCurves::columns).doc("which, a line each; empty: all");
   d.param("title", &PlotCurves::title).doc("empty: the table's");
   d.param("y_label", &PlotCurves::y_label).doc("what the values are");
+  d.param("log10", &PlotCurves::log10).doc("common logarithms of the values; those not above 0 are left out");
 }
 
 }  // namespace talkgraph

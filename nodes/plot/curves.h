@@ -11,6 +11,7 @@ struct PlotCurves {
   std::vector<std::string> columns;  ///< empty: all
   std::string title;                 ///< empty: the table's
   std::string y_label;
+  bool log10 = false;  ///< common logarithms of the values; those not above 0 are left out
 
   Plot operator()(const Table& table) const;
 };

@@ -2,6 +2,7 @@
 
 #include "nodes/plot/bars.h"
 #include "nodes/plot/columns.h"
+#include "nodes/plot/contexts.h"
 #include "nodes/plot/convergence.h"
 #include "nodes/plot/curves.h"
 #include "nodes/plot/latent.h"
@@ -17,6 +18,7 @@ void register_plot(Registry& registry) {
   registry.add<PhoneMeans>();
   registry.add<PlotBars>();
   registry.add<PlotColumns>();
+  registry.add<PlotContexts>();
   registry.add<PlotConvergence>();
   registry.add<PlotCurves>();
   registry.add<PlotLatent>();

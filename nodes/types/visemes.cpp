@@ -16,4 +16,10 @@ std::optional<int> viseme(std::string_view phone) {
   return {};
 }
 
+std::optional<std::string> viseme_label(std::string_view phone) {
+  const auto number = viseme(phone);
+  if (!number) return {};
+  return *number == 0 ? "sil" : std::to_string(*number);
+}
+
 }  // namespace talkgraph

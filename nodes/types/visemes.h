@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace talkgraph {
@@ -32,5 +33,8 @@ bool is_phone(std::string_view label);
 /// The MPEG-4 viseme of a CMU or BEEP phone, 1 to 14, 0 of a pause,
 /// nothing of what is no phone.
 std::optional<int> viseme(std::string_view phone);
+
+/// The same as a label: "1" to "14", or "sil".
+std::optional<std::string> viseme_label(std::string_view phone);
 
 }  // namespace talkgraph

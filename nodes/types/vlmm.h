@@ -10,31 +10,38 @@ namespace talkgraph {
 
 /// A variable length Markov model of phones as a probabilistic automaton
 /// (docs/method.md §5, thesis §5.2.1). Its symbols are the phones of video frames, or of
-/// runs of equal frames. Phones are written as indices into `alphabet`; labels
+/// runs of equal frames, or their visemes. They are written as indices into `alphabet`; labels
 /// as phones joined by '-', oldest first.
 struct Vlmm {
-  /// A memory w of at most `order` phones, oldest first.
+  /// A memory w of at most `order` symbols, oldest first.
   struct State {
     std::vector<std::int64_t> memory;
-    std::vector<double> probability;  ///< of each next phone
-    std::vector<std::int64_t> next;   ///< state after each phone, -1 where there is no transition
+    std::vector<double> probability;  ///< of each next symbol
+    std::vector<std::int64_t> next;   ///< state after each symbol, -1 where there is no transition
+    double end = 0;                   ///< share of the memory's occurrences at the end of a stream
   };
 
   std::int64_t order = 6;
   bool repeating = true;                          ///< one symbol a frame; false: one a run of equal frames
+  bool visemes = false;                           ///< the symbols are visemes (viseme_label), not phones
   std::vector<std::string> alphabet;              ///< sorted
   std::vector<State> states;                      ///< the first is the empty memory
   std::map<std::string, std::int64_t> occupancy;  ///< training frames that carry each label
   std::map<std::string, std::int64_t> windows;    ///< trainable labels and how often each occurs in training
 
-  /// Single phones of the alphabet always are.
+  /// Single symbols of the alphabet always are.
   bool trainable(const std::string& label) const { return windows.contains(label); }
 };
-void fields(Archive& ar, Vlmm::State& s);
 template <>
-inline constexpr PortType port_type<Vlmm>{"Vlmm", 1};
+inline constexpr PortType port_type<Vlmm>{"Vlmm", 2};
+/// Throws std::runtime_error if what is loaded does not fit together.
 void fields(Archive& ar, Vlmm& v);
 
+/// Training frames read in a state's memory. Those for which there was no transition count for the first state.
+std::int64_t frames_read(const Vlmm& v, std::size_t state);
+
+/// {3, 1, 4} -> "k-ae-t"
+std::string memory_label(const Vlmm& v, const std::vector<std::int64_t>& memory);
 /// "k-ae-t" -> {"k", "ae", "t"}
 std::vector<std::string> label_phones(const std::string& label);
 /// The inverse, of phones[from] to phones[to - 1].

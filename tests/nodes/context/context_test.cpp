@@ -124,6 +124,35 @@ TEST(ContextTrain, FindsTheSmallAutomatonOfAnAlternation) {
   EXPECT_EQ(ContextDecode{}(v, stream("aba")).labels, (std::vector<std::string>{"a", "a-b", "b-a"}));
 }
 
+// "aabaab..." by hand, of twelve symbols. p(a) = 2/3; p(a|a) = 1/2; p(a|b) = 1; after aa comes b, after ba comes a.
+// Gains: b 1/3 ln 3/2, a 2/3 (ln 3/2 - ln 4/3)/2, aa 1/3 ln 2, ba 1/4 ln 2, ab nothing.
+TEST(ContextTrain, FindsTheAutomatonOfAPeriodOfThree) {
+  const Collected<FrameLabels> labels = {{"x", stream("aabaabaabaab")}};
+  const ContextTrain train{.order = 2, .prune = 0, .keep = 0.01, .min_windows = 4};
+  const Vlmm v = train(labels);
+  ASSERT_EQ(memories(v), (std::set<std::string>{"", "a", "aa", "b", "ba"}));
+  const std::vector<std::vector<std::int64_t>> next = {{1, 3}, {2, 3}, {-1, 3}, {4, -1}, {2, -1}};
+  const std::vector<std::vector<double>> probability = {{2. / 3, 1. / 3}, {0.5, 0.5}, {0, 1}, {1, 0}, {1, 0}};
+  for (std::size_t s = 0; s < 5; ++s) {
+    EXPECT_EQ(v.states[s].next, next[s]) << s;
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_DOUBLE_EQ(v.states[s].probability[i], probability[s][i]);
+  }
+  EXPECT_EQ(v.states[0].end, 0);
+  EXPECT_EQ(v.states[3].end, 0.25);
+  EXPECT_EQ(ContextDecode{}(v, stream("aabaab")).labels,
+            (std::vector<std::string>{"a", "a-a", "a-a-b", "b-a", "b-a-a", "a-a-b"}));
+  EXPECT_EQ(v.windows, (std::map<std::string, std::int64_t>{{"a", 8}, {"a-a", 4}, {"a-a-b", 4}, {"b", 4}}));
+
+  const auto kept = [&](double keep, double prune) {
+    ContextTrain other = train;
+    other.keep = keep, other.prune = prune;
+    return memories(other(labels));
+  };
+  EXPECT_EQ(kept(0.174, 0), (std::set<std::string>{"", "a", "aa"}));  // a for the sake of aa
+  EXPECT_EQ(kept(0.232, 0), (std::set<std::string>{""}));
+  EXPECT_EQ(kept(0.01, 0.25), (std::set<std::string>{"", "a", "aa"}));  // ba, a quarter, is pruned: b predicts nothing
+}
+
 // Straight from the definitions: substrings counted by search, the criterion
 // applied to every string of the right length.
 TEST(ContextTrain, AgreesWithADirectSearch) {
@@ -245,6 +274,21 @@ TEST(ContextSegment, WalksBackFromTheLastFrame) {
   EXPECT_EQ(track.segments[1].start, 2);
 }
 
+TEST(ContextSegment, MergesNeighboursOfOneLabelIfAsked) {
+  Vlmm v;
+  for (const char* label : {"a", "b", "a-b"}) v.windows[label] = 10;
+  const FrameLabels contexts{{"a", "a-b", "a", "a-b", "b", "b"}, Rational(25)};
+  EXPECT_EQ(ContextSegment{}(v, contexts).segments.size(), 4u);
+  const auto merged = ContextSegment{.merge = true}(v, contexts).segments;
+  ASSERT_EQ(merged.size(), 2u);
+  EXPECT_EQ(merged[0].label, "a-b");
+  EXPECT_EQ(merged[0].start, 0);
+  EXPECT_EQ(merged[0].length, 4);
+  EXPECT_EQ(merged[1].label, "b");
+  EXPECT_EQ(merged[1].start, 4);
+  EXPECT_EQ(merged[1].length, 2);
+}
+
 Track ramp(int n, double offset) {
   Track t;
   t.values.resize(n, 1);
@@ -329,19 +373,6 @@ TEST(ContextWindows, RefusesTracksOfOtherLengths) {
   EXPECT_THROW(ContextWindows{}(v, labels, audio, {}), std::runtime_error);
 }
 
-TEST(Vlmm, IsSavedWhole) {
-  const test::TemporaryFolder folder;
-  const std::string path = folder.file("vlmm.h5");
-  Vlmm v = ContextTrain{.order = 3, .prune = 0, .keep = 0, .repeating = false}({{"x", stream("aabbabacab")}}), back;
-  write_hdf5(path, [&](Archive& ar) { ar("v", v); });
-  (*hdf5_reader(path))("v", back);
-  const auto hash = [](Vlmm& x) { return content_key([&](Archive& ar) { fields(ar, x); }); };
-  EXPECT_EQ(hash(back), hash(v));
-  EXPECT_EQ(back.states.size(), v.states.size());
-  EXPECT_FALSE(back.repeating);
-  EXPECT_EQ(back.states.back().memory, v.states.back().memory);
-}
-
 // A phone that was never heard is spoken for by the commonest of its viseme.
 TEST(ContextSegment, AnswersAnUnknownPhoneByItsViseme) {
   const Vlmm v = ContextTrain{}({{"x", {{"sil", "p", "b", "b", "ae"}, Rational(25)}}});
@@ -352,6 +383,54 @@ TEST(ContextSegment, AnswersAnUnknownPhoneByItsViseme) {
   EXPECT_EQ(label("breath"), "sil");
   EXPECT_EQ(label("s"), "s");  // no phone of its viseme is known
   EXPECT_EQ(label("7"), "7");
+}
+
+// Whatever is said, every frame gets a label, and every segment a state that was trained, or else the phone that only
+// the sound can tell about (state_for of nodes/mapping).
+TEST(Contexts, AnswerWhatWasNeverTrainedOn) {
+  for (const bool repeating : {true, false}) {
+    const ContextTrain train{.prune = 0.02, .repeating = repeating};
+    const Vlmm v = train({{"x", {{"sil", "p", "aa", "aa", "t", "aa", "p", "p", "s", "sil"}, Rational(25)}}});
+    const auto labels = [&](const std::vector<std::string>& phones) {
+      std::vector<std::string> all;
+      for (const auto& s : ContextSegment{}(v, ContextDecode{}(v, {phones, Rational(25)})).segments)
+        all.push_back(s.label);
+      return all;
+    };
+    EXPECT_TRUE(labels({}).empty());
+    EXPECT_EQ(labels({"aa"}), std::vector<std::string>{"aa"});
+    EXPECT_EQ(labels({"m"}), std::vector<std::string>{"p"});
+    EXPECT_EQ(labels({"d"}), std::vector<std::string>{"t"});
+    EXPECT_EQ(labels({"breath"}), std::vector<std::string>{"sil"});
+    EXPECT_EQ(labels({"lead_sil", "z", "trail_sil"}), (std::vector<std::string>{"sil", "s", "sil"}));
+    EXPECT_EQ(labels({"w"}), std::vector<std::string>{"w"});
+    EXPECT_EQ(labels({"s", "aa", "sil"}), (std::vector<std::string>{"s", "aa", "sil"}));
+  }
+}
+
+// b, p and m are viseme 1, ae and aa 10: five of the six frames before the pause are one of two symbols.
+TEST(Contexts, AreOfVisemesIfAsked) {
+  const Collected<FrameLabels> labels = {
+      {"x", {{"lead_sil", "b", "ae", "p", "aa", "m", "ae", "breath", "trail_sil"}, Rational(25)}}};
+  const Vlmm v = ContextTrain{.order = 1, .keep = 0.01, .min_windows = 1, .symbols = SymbolKind::visemes}(labels);
+  EXPECT_EQ(v.alphabet, (std::vector<std::string>{"1", "10", "lead_sil", "sil", "trail_sil"}));
+  EXPECT_EQ(v.windows.at("1-10"), 3);
+  // Phones that were not trained on, but whose visemes were.
+  const auto contexts = ContextDecode{}(v, {{"m", "ah", "b", "s"}, Rational(25)});
+  EXPECT_EQ(contexts.labels, (std::vector<std::string>{"1", "1-10", "10-1", "7"}));
+  EXPECT_EQ(ContextSegment{}(v, contexts).segments.at(0).label, "1");
+
+  const Collected<Track> tracks{{"x", ramp(9, 0)}};
+  auto states = ContextWindows{}(v, labels, tracks, tracks);
+  while (auto state = states.next())
+    if (state->key == "1-10") {
+      EXPECT_EQ(state->value.audio.size(), 3u);
+      EXPECT_EQ(state->value.audio[1], Eigen::Vector2d(3, 4));
+    }
+  const Table t = ContextPerplexity{}(v, {{"y", {{"m", "ah", "m", "ah"}, Rational(25)}}});
+  EXPECT_EQ(t.cells[0][3], 0) << "each transition is known";
+  const ContextTrain train{.symbols = SymbolKind::visemes};
+  EXPECT_THROW(train({{"x", {{"7"}, Rational(25)}}}), std::runtime_error);
 }
 
 TEST(ContextTrain, RefusesLabelsThatCannotBeJoined) {
@@ -400,6 +479,8 @@ TEST(ContextPerplexity, IsThatOfTheTransitions) {
   EXPECT_DOUBLE_EQ(score("aa", "entropy"), 1.5);  // the floor for a after a
   EXPECT_DOUBLE_EQ(score("aa", "missed"), 0.5);
   EXPECT_DOUBLE_EQ(score("q", "entropy"), 2);
+  EXPECT_DOUBLE_EQ(score("baba", "entropy"), 0.75);   // 1 + 1 + 0 + 1
+  EXPECT_DOUBLE_EQ(score("baba", "best_path"), 0.5);  // begun in a: 0 + 1 + 0 + 1
   EXPECT_THROW(ContextPerplexity{}(v, {}), std::runtime_error);
 }
 

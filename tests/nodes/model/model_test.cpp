@@ -18,6 +18,7 @@ class ModelFile : public testing::Test {
     context.folder = folder.path();
     contexts.alphabet = {"aa", "b"};
     contexts.states = {{{}, {0.5, 0.5}, {0, 0}}};
+    contexts.windows = {{"aa", 1}, {"b", 1}};
     mean.values = Eigen::RowVector3d(1, 2, 3);
     base.frames = video_from_frames({cv::Mat(4, 6, CV_8UC3, cv::Scalar(1, 2, 3))}, Rational(25));
   }

@@ -20,6 +20,11 @@ TEST(PlotCurves, DrawsTheColumnsAskedFor) {
   EXPECT_THAT(one.svg, HasSubstr("share"));
   EXPECT_THAT(one.svg, testing::Not(HasSubstr("texture")));
   const PlotCurves unknown{{"colour"}, "", ""};
+  // A tenth, one and ten lie a tick apart each, nothing is left out.
+  const PlotCurves logarithms{.columns = {}, .title = "", .y_label = "", .log10 = true};
+  const Plot plot = logarithms({"", "", {"n"}, {"1", "2", "3", "4"}, {{0.1}, {1}, {10}, {0}}});
+  EXPECT_THAT(plot.svg, HasSubstr("-1<"));
+  EXPECT_THAT(plot.svg, testing::Not(HasSubstr("inf")));
   EXPECT_THROW(unknown(table), std::runtime_error);
   EXPECT_THAT(PlotCurves{}({"none", "mode", {"shape"}, {}, {}}).svg, HasSubstr("<svg"));
 }

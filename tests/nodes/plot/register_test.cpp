@@ -8,8 +8,9 @@ namespace {
 TEST(RegisterPlot, DescribesEveryNode) {
   Registry registry;
   register_plot(registry);
-  for (const char* name : {"plot.bars", "plot.columns", "plot.convergence", "plot.curves", "plot.latent",
-                           "plot.mean_trajectory", "plot.phone_means", "plot.tracks", "plot.trajectories"})
+  for (const char* name :
+       {"plot.bars", "plot.columns", "plot.contexts", "plot.convergence", "plot.curves", "plot.latent",
+        "plot.mean_trajectory", "plot.phone_means", "plot.tracks", "plot.trajectories"})
     EXPECT_TRUE(registry.find(name)) << name;
 }
 
