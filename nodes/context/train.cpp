@@ -15,14 +15,6 @@ namespace {
 
 using Symbols = std::vector<std::int64_t>;
 
-/// Σ p ln(p / q) over the symbols seen after the longer memory.
-double divergence(const std::vector<double>& p, const std::vector<double>& q) {
-  double sum = 0;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (p[i] > 0) sum += p[i] * std::log(p[i] / q[i]);
-  return sum;
-}
-
 /// The memories worth keeping and the automaton of them.
 class Learner {
  public:
@@ -39,25 +31,36 @@ class Learner {
   }
 
  private:
-  double share(int node) const { return static_cast<double>(tree_[node].count) / total_; }
+  double share(int node) const { return count(node) / total_; }
   bool survives(int node) const { return share(node) > prune_; }
 
-  /// p(σ | string of the node) over the branches not pruned; all zero if none is left.
-  std::vector<double> next(int node) const {
-    std::vector<double> p(symbols_);
-    double sum = 0;
+  template <class Visit>
+  void each_branch(int node, Visit visit) const {
     for (int c = tree_[node].first_child; c >= 0; c = tree_[c].sibling)
-      if (survives(c)) sum += p[static_cast<std::size_t>(tree_[c].symbol)] = static_cast<double>(tree_[c].count);
-    if (sum > 0)
-      for (auto& x : p) x /= sum;
-    return p;
+      if (survives(c)) visit(c);
+  }
+  double count(int node) const { return static_cast<double>(tree_[node].count); }
+  /// Over the branches that were not pruned.
+  double followed(int node) const {
+    double sum = 0;
+    each_branch(node, [&](int c) { sum += count(c); });
+    return sum;
+  }
+  /// p(w) Σ p(σ|w) ln (p(σ|w) / p(σ|v)) of a string w and its suffix v.
+  double gain(int node) const {
+    const double longer = followed(node), shorter = followed(tree_[node].suffix);
+    double sum = 0;
+    each_branch(node, [&](int c) {
+      const double p = count(c) / longer;
+      sum += p * std::log(p / (count(tree_[c].suffix) / shorter));
+    });
+    return share(node) * sum;
   }
   double end(int node) const {
-    std::int64_t followed = 0;
-    for (int c = tree_[node].first_child; c >= 0; c = tree_[c].sibling) followed += tree_[c].count;
-    return 1 - static_cast<double>(followed) / static_cast<double>(tree_[node].count);
+    std::int64_t inside = 0;
+    for (int c = tree_[node].first_child; c >= 0; c = tree_[c].sibling) inside += tree_[c].count;
+    return 1 - static_cast<double>(inside) / count(node);
   }
-  double gain(int node) const { return share(node) * divergence(next(node), next(tree_[node].suffix)); }
 
   std::vector<int> sorted_memories() const {
     std::vector<std::pair<Symbols, int>> memories;
@@ -73,13 +76,15 @@ class Learner {
       state_[static_cast<std::size_t>(nodes[i])] = static_cast<std::int64_t>(i);
     std::vector<Vlmm::State> states;
     for (const int node : nodes) {
-      Vlmm::State state{tree_.string(node), next(node), Symbols(symbols_, -1), end(node)};
-      for (int c = tree_[node].first_child; c >= 0; c = tree_[c].sibling) {
-        if (!survives(c)) continue;
+      Vlmm::State state{tree_.string(node), std::vector<double>(symbols_), Symbols(symbols_, -1), end(node)};
+      const double all = followed(node);
+      each_branch(node, [&](int c) {
         int longest = c;
         while (state_[static_cast<std::size_t>(longest)] < 0) longest = tree_[longest].suffix;
-        state.next[static_cast<std::size_t>(tree_[c].symbol)] = state_[static_cast<std::size_t>(longest)];
-      }
+        const auto symbol = static_cast<std::size_t>(tree_[c].symbol);
+        state.probability[symbol] = count(c) / all;
+        state.next[symbol] = state_[static_cast<std::size_t>(longest)];
+      });
       states.push_back(std::move(state));
     }
     return states;
