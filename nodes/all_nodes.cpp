@@ -17,6 +17,7 @@
 #include "nodes/smooth/register.h"
 #include "nodes/speaker/register.h"
 #include "nodes/speech/register.h"
+#include "nodes/statistics/register.h"
 #include "nodes/sync/register.h"
 #include "nodes/voice/register.h"
 #include "nodes/write/register.h"
@@ -45,6 +46,7 @@ Registry all_nodes() {
   register_smooth(r);
   register_speaker(r);
   register_speech(r);
+  register_statistics(r);
   register_sync(r);
   register_voice(r);
   register_write(r);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "nodes/evaluate/edit_path.h"
 #include "nodes/types/median.h"
 #include "nodes/types/visemes.h"
 
@@ -37,42 +38,15 @@ int substitution(const std::string& a, const std::string& b) {
   return is_vowel(a) == is_vowel(b) ? 2 : 3;
 }
 
-enum class Step : char { pair, missing, extra };
-
-/// Steps of the least edit distance, the last first.
-std::vector<Step> edit_path(const std::vector<Interval>& truth, const std::vector<Interval>& found) {
-  const std::size_t n = truth.size(), m = found.size();
-  std::vector<Step> steps((n + 1) * (m + 1), Step::extra);
-  std::vector<int> row(m + 1), above(m + 1);
-  for (std::size_t j = 0; j <= m; ++j) row[j] = 2 * static_cast<int>(j);
-  for (std::size_t i = 1; i <= n; ++i) {
-    std::swap(row, above);
-    row[0] = above[0] + 2;
-    steps[i * (m + 1)] = Step::missing;
-    for (std::size_t j = 1; j <= m; ++j) {
-      const int pair = above[j - 1] + substitution(truth[i - 1].label, found[j - 1].label);
-      const int missing = above[j] + 2, extra = row[j - 1] + 2;
-      row[j] = std::min({pair, missing, extra});
-      steps[i * (m + 1) + j] = row[j] == pair ? Step::pair : row[j] == missing ? Step::missing : Step::extra;
-    }
-  }
-  std::vector<Step> path;
-  for (std::size_t i = n, j = m; i + j > 0;) {
-    path.push_back(steps[i * (m + 1) + j]);
-    i -= path.back() != Step::extra;
-    j -= path.back() != Step::missing;
-  }
-  return path;
-}
-
 Agreement compare(const PhoneTrack& true_track, const PhoneTrack& found_track) {
   const auto truth = spoken(true_track), found = spoken(found_track);
   Agreement agreement{truth.size(), 0, {}};
   std::size_t i = truth.size(), j = found.size();
-  for (const Step step : edit_path(truth, found)) {
-    i -= step != Step::extra;
-    j -= step != Step::missing;
-    if (step == Step::pair && truth[i].label == found[j].label)
+  const auto pair = [&](std::size_t a, std::size_t b) { return substitution(truth[a].label, found[b].label); };
+  for (const Edit step : edit_path(truth.size(), found.size(), 2, pair)) {
+    i -= step != Edit::extra;
+    j -= step != Edit::missing;
+    if (step == Edit::pair && truth[i].label == found[j].label)
       agreement.errors.push_back(1000 * (found[j].start - truth[i].start));
     else
       ++agreement.different;

@@ -11,11 +11,6 @@ double deviation(const Eigen::VectorXd& x) { return std::sqrt((x.array() - x.mea
 /// More than rounding of a constant.
 bool varies(const Eigen::VectorXd& x) { return deviation(x) > 1e-12 * x.cwiseAbs().maxCoeff(); }
 
-double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  if (!varies(a) || !varies(b)) return 0;
-  return ((a.array() - a.mean()) * (b.array() - b.mean())).mean() / (deviation(a) * deviation(b));
-}
-
 /// The rows that count, of the common beginning.
 std::vector<Eigen::Index> counted(const Track& truth, Eigen::Index frames, const Mask* speech) {
   std::vector<Eigen::Index> rows;
@@ -29,7 +24,16 @@ std::vector<Eigen::Index> counted(const Track& truth, Eigen::Index frames, const
 
 }  // namespace
 
-std::optional<Scores> Score::operator()(const Track& truth, const Track& predicted, const Mask* speech) const {
+double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  if (!varies(a) || !varies(b)) return 0;
+  return ((a.array() - a.mean()) * (b.array() - b.mean())).mean() / (deviation(a) * deviation(b));
+}
+
+double range_of_motion(const Eigen::VectorXd& truth, const Eigen::VectorXd& predicted) {
+  return varies(truth) ? deviation(predicted) / deviation(truth) : NAN;
+}
+
+ScoredFrames scored_frames(const Track& truth, const Track& predicted, const Mask* speech) {
   if (truth.dimension() != predicted.dimension() || truth.dimension() == 0)
     throw std::runtime_error("truth has " + std::to_string(truth.dimension()) + " dimensions, the prediction " +
                              std::to_string(predicted.dimension()));
@@ -41,10 +45,15 @@ std::optional<Scores> Score::operator()(const Track& truth, const Track& predict
     throw std::runtime_error("speech is marked for " + std::to_string(speech->frames.size()) + " frames of " +
                              std::to_string(frames));
   const auto rows = counted(truth, frames, speech);
-  const Eigen::MatrixXd z = truth.values(rows, Eigen::all), p = predicted.values(rows, Eigen::all);
-  if (z.rows() == 0) return {};
-  if (!z.allFinite() || !p.allFinite()) throw std::runtime_error("NaN or infinite values cannot be scored");
+  ScoredFrames both{truth.values(rows, Eigen::all), predicted.values(rows, Eigen::all)};
+  if (!both.truth.allFinite() || !both.predicted.allFinite())
+    throw std::runtime_error("NaN or infinite values cannot be scored");
+  return both;
+}
 
+std::optional<Scores> Score::operator()(const Track& truth, const Track& predicted, const Mask* speech) const {
+  const auto [z, p] = scored_frames(truth, predicted, speech);
+  if (z.rows() == 0) return {};
   const Eigen::MatrixXd error = (z - p).cwiseAbs();
   double acc = 0;
   for (Eigen::Index d = 0; d < z.cols(); ++d) acc += correlation(z.col(d), p.col(d));
@@ -56,7 +65,7 @@ std::optional<Scores> Score::operator()(const Track& truth, const Track& predict
   s.values["l1"] = error.mean();
   s.values["l2"] = std::sqrt(amse);
   s.values["linf"] = error.rowwise().maxCoeff().mean();
-  s.values["range"] = varies(z.col(0)) ? deviation(p.col(0)) / deviation(z.col(0)) : NAN;
+  s.values["range"] = range_of_motion(z.col(0), p.col(0));
   return s;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 
 namespace talkgraph {
@@ -17,12 +18,13 @@ LandmarkTrack FaceShapes::operator()(const AppearanceModel& model, const Track& 
   check_dimension(model, parameters);
   LandmarkTrack out{{}, parameters.rate, model.scheme};
   for (Eigen::Index t = 0; t < parameters.frames(); ++t) out.frames.push_back(model.shape(parameters.values.row(t)));
+  for (const std::int64_t t : parameters.lost) out.frames[static_cast<std::size_t>(t)].setConstant(NAN);
   return out;
 }
 
 void describe(Description<FaceShapes>& d) {
   d.type("face.shapes")
-      .version(1)
+      .version(2)
       .summary("face shapes of appearance parameters, without head pose")
       .source("Thesis Eqn 3.18");
   d.input("model", "of the face")

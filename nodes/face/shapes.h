@@ -8,8 +8,8 @@
 namespace talkgraph {
 
 /// The shapes of appearance parameters in the model frame: free of head pose,
-/// in pixels of the mean shape. Throws std::runtime_error if the track has
-/// another dimension than the model.
+/// in pixels of the mean shape, none (nan) in lost frames. Throws
+/// std::runtime_error if the track has another dimension than the model.
 struct FaceShapes {
   LandmarkTrack operator()(const AppearanceModel& model, const Track& parameters) const;
 };

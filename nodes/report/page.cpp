@@ -32,16 +32,18 @@ figcaption { color: #444; }
 
 std::string number(double v) { return fmt::format("{:.4g}", v); }
 
-/// Column that holds the deviations of column c, or -1.
-std::ptrdiff_t deviation_of(const Table& table, std::size_t c) {
-  const auto it = std::find(table.columns.begin(), table.columns.end(), table.columns[c] + " std");
+/// The column `name`, or -1.
+std::ptrdiff_t column_of(const Table& table, const std::string& name) {
+  const auto it = std::find(table.columns.begin(), table.columns.end(), name);
   return it == table.columns.end() ? -1 : it - table.columns.begin();
 }
 
-bool is_deviation(const Table& table, std::size_t c) {
+/// Whether column c is shown in the cells of another: its deviations, the ends of its intervals.
+bool is_beside_another(const Table& table, std::size_t c) {
   const std::string& name = table.columns[c];
-  return name.ends_with(" std") &&
-         std::find(table.columns.begin(), table.columns.end(), name.substr(0, name.size() - 4)) != table.columns.end();
+  for (const std::string_view what : {" std", " low", " high"})
+    if (name.ends_with(what) && column_of(table, name.substr(0, name.size() - what.size())) >= 0) return true;
+  return false;
 }
 
 /// What rounding left of a zero is shown as one; the files keep every digit.
@@ -50,11 +52,15 @@ double shown(double value) { return std::abs(value) < 1e-12 ? 0 : value; }
 std::string cell(const Table& table, std::size_t row, std::size_t c) {
   const double value = shown(table.cells[row][c]);
   if (std::isnan(value)) return "<td>–</td>";
-  const auto deviation = deviation_of(table, c);
-  if (deviation < 0) return "<td>" + number(value) + "</td>";
-  const double spread = shown(table.cells[row][static_cast<std::size_t>(deviation)]);
+  const auto beside = [&](const char* what) {
+    const auto column = column_of(table, table.columns[c] + what);
+    return column < 0 ? NAN : shown(table.cells[row][static_cast<std::size_t>(column)]);
+  };
+  const double spread = beside(" std"), low = beside(" low"), high = beside(" high");
   if (std::isnan(spread)) return "<td>" + number(value) + "</td>";
-  return fmt::format("<td>{:.3g} ± {:.2g}</td>", value, spread);
+  std::string text = fmt::format("<td>{:.3g} ± {:.2g}", value, spread);
+  if (!std::isnan(low)) text += fmt::format("<br><small>{:.3g} to {:.3g}</small>", low, high);
+  return text + "</td>";
 }
 
 /// A relative path as a URL: what is no letter, digit or one of "-._~/" is written as %XX.
@@ -97,12 +103,12 @@ std::string html_table(const std::string& name, const Table& table) {
       fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr><th scope=\"col\">{}</th>",
                   escape_markup(table.title.empty() ? name : table.title), escape_markup(table.corner));
   for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (!is_deviation(table, c)) out += "<th scope=\"col\">" + escape_markup(table.columns[c]) + "</th>";
+    if (!is_beside_another(table, c)) out += "<th scope=\"col\">" + escape_markup(table.columns[c]) + "</th>";
   out += "</tr></thead>\n<tbody>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     out += "<tr><th scope=\"row\">" + escape_markup(table.rows[r]) + "</th>";
     for (std::size_t c = 0; c < table.columns.size(); ++c)
-      if (!is_deviation(table, c)) out += cell(table, r, c);
+      if (!is_beside_another(table, c)) out += cell(table, r, c);
     out += "</tr>\n";
   }
   return out + "</tbody>\n</table></div>\n";

@@ -1,0 +1,55 @@
+#include "nodes/statistics/intervals.h"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+
+namespace talkgraph {
+namespace {
+
+constexpr ConfidenceInterval kUnknown{NAN, NAN};
+
+/// Of sorted values.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const double next = sorted[std::min(below + 1, sorted.size() - 1)];
+  return sorted[below] + (place - static_cast<double>(below)) * (next - sorted[below]);
+}
+
+}  // namespace
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double deviation_of(const std::vector<double>& values) {
+  if (values.size() < 2) return NAN;
+  const double mean = mean_of(values);
+  double squares = 0;
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+ConfidenceInterval student_interval(const std::vector<double>& values, double confidence) {
+  if (values.size() < 2) return kUnknown;
+  const auto n = static_cast<double>(values.size());
+  const double t = boost::math::quantile(boost::math::students_t(n - 1), (1 + confidence) / 2);
+  const double mean = mean_of(values), half = t * deviation_of(values) / std::sqrt(n);
+  return {mean - half, mean + half};
+}
+
+ConfidenceInterval bootstrap_interval(const std::vector<double>& values, double confidence, int samples,
+                                      Random& random) {
+  if (values.size() < 2) return kUnknown;
+  std::vector<double> means(static_cast<std::size_t>(samples)), drawn(values.size());
+  for (double& mean : means) {
+    for (double& v : drawn) v = values[random.below(values.size())];
+    mean = mean_of(drawn);
+  }
+  std::sort(means.begin(), means.end());
+  return {quantile(means, (1 - confidence) / 2), quantile(means, (1 + confidence) / 2)};
+}
+
+}  // namespace talkgraph

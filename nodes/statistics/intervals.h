@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "graph/description.h"
+#include "graph/random.h"
+
+namespace talkgraph {
+
+/// Where a quantity lies with a given confidence; NaN if nothing can be said.
+struct ConfidenceInterval {
+  double low, high;
+};
+
+enum class IntervalKind { student, bootstrap };
+template <>
+inline constexpr EnumNames<IntervalKind, 2> enum_names<IntervalKind>{
+    {{IntervalKind::student, "student"}, {IntervalKind::bootstrap, "bootstrap"}}};
+
+/// NaN of nothing.
+double mean_of(const std::vector<double>& values);
+/// Of a sample, that is divided by n − 1; NaN of fewer than two values.
+double deviation_of(const std::vector<double>& values);
+
+/// Of the mean of normal values: mean ± t_{n−1} s/√n (Student 1908). NaN of fewer than two values.
+ConfidenceInterval student_interval(const std::vector<double>& values, double confidence);
+
+/// Of the mean of values of any distribution: quantiles of the means of `samples` draws with replacement (Efron 1979,
+/// the percentile method), interpolated linearly. NaN of fewer than two values.
+ConfidenceInterval bootstrap_interval(const std::vector<double>& values, double confidence, int samples,
+                                      Random& random);
+
+}  // namespace talkgraph

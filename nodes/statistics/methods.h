@@ -1,0 +1,44 @@
+#pragma once
+
+#include "graph/description.h"
+#include "graph/random.h"
+#include "nodes/statistics/correction.h"
+#include "nodes/statistics/intervals.h"
+#include "nodes/types/report.h"
+
+namespace talkgraph {
+
+/// Compares methods by their scores of each sequence. Tests are Wilcoxon's signed-rank test, sequence by sequence
+/// (signed_rank.h), over the sequences that have both scores; NaN where none has. Throws std::runtime_error if the
+/// tables' columns differ, a sequence is there twice, a score is infinite or unknown, or a method named here is not
+/// there.
+struct CompareMethods {
+  std::vector<std::string> scores;  ///< columns, in their order; empty: all
+  std::string against;
+  std::vector<std::string> aside;
+  double confidence = 0.95;
+  IntervalKind interval = IntervalKind::student;
+  int samples = 10000;
+  Correction correction = Correction::holm;
+  std::string title = "Scores";
+
+  struct Out {
+    /// A row a method. Of each score:
+    ///   x         mean over the sequences that have it
+    ///   x std     standard deviation of a sample
+    ///   x low, x high  confidence interval of the mean
+    ///   x p       of the test against the method `against`, corrected over the methods for this score; NaN for that
+    ///             method and those of `aside`. Not there if `against` is empty.
+    /// The last column is the number of sequences.
+    Table table;
+    /// A row a pair "A - B" of methods, those of `aside` left out. Of each score:
+    ///   x         mean of the difference
+    ///   x p       of the test, corrected over the pairs for this score
+    ///   x effect  matched-pairs rank-biserial correlation: 1 if A's score is the larger one in every sequence
+    Table pairs;
+  };
+  Out operator()(const Collected<Table>& sequences, Random& random) const;
+};
+void describe(Description<CompareMethods>& d);
+
+}  // namespace talkgraph

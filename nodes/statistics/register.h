@@ -1,0 +1,9 @@
+#pragma once
+
+#include "graph/registry.h"
+
+namespace talkgraph {
+
+void register_statistics(Registry& registry);
+
+}  // namespace talkgraph

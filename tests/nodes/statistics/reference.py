@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""Prints the reference values of statistics_test.cpp, by scipy (Debian's python3-scipy)."""
+from itertools import product
+
+import numpy as np
+from scipy import stats
+
+few = [0.5, -1.25, 2.0, 3.5, -0.75, 4.25, 1.0, 2.75, -3.0, 5.5]
+tied = [1, 1, -1, 2, 2, -2, 3, 3, -4, 5, 5, 5]
+many = [((37 * i) % 101 - 40) / 8 for i in range(60)]  # ties, a zero
+plain = [12.5, 11.0, 14.25, 9.75, 13.0, 12.0]
+
+
+def signed_rank_by_all_signs(d):
+    ranks = stats.rankdata(np.abs(d))
+    sums = np.array([sum(r for r, s in zip(ranks, signs) if s) for signs in product([0, 1], repeat=len(d))])
+    least = min(ranks[np.array(d) > 0].sum(), ranks[np.array(d) < 0].sum())
+    return least, min(1, 2 * np.mean(sums <= least))
+
+
+def corrected(p, rule):  # by their definitions
+    order = np.argsort(p, kind="stable")
+    m = len(p)
+    out = np.empty(m)
+    if rule == "holm":
+        out[order] = np.minimum(1, np.maximum.accumulate([(m - k) * p[i] for k, i in enumerate(order)]))
+    else:
+        out[order] = np.minimum(1, np.minimum.accumulate([m / (k + 1) * p[i] for k, i in enumerate(order)][::-1])[::-1])
+    return out
+
+
+show = lambda *values: print(", ".join(f"{v:.17g}" for v in values))
+show(*stats.wilcoxon(few, mode="exact"))
+show(*stats.wilcoxon([5, 4, -3, 6, 7.5, 8, 9.25, 10], mode="exact"))
+show(*signed_rank_by_all_signs(tied))
+show(*stats.wilcoxon(many, mode="approx", correction=False, zero_method="wilcox"))
+show(*stats.t.interval(0.95, len(plain) - 1, np.mean(plain), stats.sem(plain)))
+show(*stats.t.interval(0.99, len(plain) - 1, np.mean(plain), stats.sem(plain)))
+show(np.mean(plain), np.std(plain, ddof=1))
+p = np.array([0.04, 0.001, 0.2, 0.013, 0.013, 0.9])
+show(*corrected(p, "holm"))
+show(*corrected(p, "bh"))
