@@ -9,7 +9,7 @@ namespace talkgraph {
 /// Throws std::runtime_error if the table lacks a column.
 struct PickColumns {
   std::vector<std::string> columns;
-  std::string title;  ///< empty: the table's
+  std::string title = {};  ///< empty: the table's
 
   Table operator()(const Table& table) const;
 };

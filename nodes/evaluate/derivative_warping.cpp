@@ -33,8 +33,8 @@ double derivative_warping(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Ei
     std::swap(row, above);
     for (auto j = std::max<Eigen::Index>(0, i - reach); j <= std::min(v.size() - 1, i + reach); ++j) {
       const auto at = static_cast<std::size_t>(j) + 1;
-      const Way before = std::min({above[at - 1], above[at], row[at - 1]},
-                                  [](const Way& x, const Way& y) { return x.sum < y.sum; });
+      const Way before =
+          std::min({above[at - 1], above[at], row[at - 1]}, [](const Way& x, const Way& y) { return x.sum < y.sum; });
       row[at] = {before.sum + std::pow(u(i) - v(j), 2), before.pairs + 1};
     }
   }

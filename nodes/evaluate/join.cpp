@@ -10,8 +10,7 @@ Scores JoinScores::operator()(const Scores& a, const Scores* b, const Scores* c,
   for (const Scores* more : {b, c, d, e, f, g}) {
     if (!more) continue;
     for (const auto& score : more->values)
-      if (!all.values.insert(score).second)
-        throw std::runtime_error("two inputs have a score \"" + score.first + "\"");
+      if (!all.values.insert(score).second) throw std::runtime_error("two inputs have a score \"" + score.first + "\"");
   }
   return all;
 }

@@ -130,8 +130,7 @@ std::optional<Scores> LipMovement::operator()(const LandmarkTrack& truth, const 
 
 void describe(Description<LipMovement>& d) {
   d.type("evaluate.lip_movement").summary("distances of synthesised lips from the true ones, and how they move");
-  d.source(
-      "Chen et al. 2018; Zhou et al. 2020 (MakeItTalk); Richard et al. 2021 (MeshTalk); Keogh & Pazzani 2001");
+  d.source("Chen et al. 2018; Zhou et al. 2020 (MakeItTalk); Richard et al. 2021 (MeshTalk); Keogh & Pazzani 2001");
   d.input("truth", "landmarks of the recorded face, free of head pose")
       .input("predicted", "of the synthesised face, in the same frame of reference")
       .input("speech", "frames that count")

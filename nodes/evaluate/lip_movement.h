@@ -22,7 +22,7 @@ namespace talkgraph {
 /// point, or the distance of `unit` is nought.
 struct LipMovement {
   std::vector<std::string> points = {"outer_lips", "inner_lips"};
-  std::vector<std::string> unit;       ///< two points whose mean true distance lengths are divided by; empty: pixels
+  std::vector<std::string> unit = {};  ///< two points whose mean true distance lengths are divided by; empty: pixels
   std::string upper = "inner_top";     ///< point in the middle of the inner upper lip, by its name in the scheme
   std::string lower = "inner_bottom";  ///< of the inner lower lip
   int window = 10;                     ///< of warping, frames

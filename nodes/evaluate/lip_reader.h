@@ -20,10 +20,10 @@ std::string lip_unit(const std::string& phone, bool visemes);
 
 /// Learns to read lips: a left-to-right hidden Markov model of every phone or viseme (thesis §6.2.4; Hilder, Harvey &
 /// Theobald 2009), of as many states as its runs have frames in the median, but at most `states`; ways lead on from a
-/// state to all later ones of its unit, and out. By Baum-Welch on whole sequences, each measured frame kept to the
-/// states of its label, from runs cut evenly. From unit to unit by counts of neighbouring runs, each once more;
-/// adjoining runs of one unit are one run. Throws std::runtime_error, naming the sequence, as measured_runs does, if
-/// lengths differ by more than two frames, or on a label that is no phone.
+/// state to all later ones of its unit, and out. By Baum-Welch on the runs of each unit, which lost frames end, from
+/// runs cut evenly. From unit to unit by counts of neighbouring runs, each once more; adjoining runs of one unit are
+/// one run. Throws std::runtime_error, naming the sequence, as measured_runs does, if lengths differ by more than two
+/// frames, or on a label that is no phone.
 struct TrainLipReader {
   LipUnits units = LipUnits::phones;
   int states = 3;

@@ -18,8 +18,8 @@ std::vector<std::string> read_lips(const LipReader& reader, const Track& track, 
 /// by the cheapest edits (HTK's costs: 10 a substitution, 7 a unit missing or extra):
 ///   x_correct   H/N = (N − D − S)/N
 ///   x_accuracy  (N − D − S − I)/N, below 0 if much is read that was not said
-/// Nothing is given for a sequence without speech. Throws as read_lips does, on a label that is no phone, and if lengths
-/// differ by more than two frames.
+/// Nothing is given for a sequence without speech. Throws as read_lips does, on a label that is no phone, and if
+/// lengths differ by more than two frames.
 struct ScoreLipReading {
   std::string name = "phone";  ///< x
   double insertion = 0;

@@ -13,9 +13,9 @@ namespace talkgraph {
 /// tables' columns differ, a sequence is there twice, a score is infinite or unknown, or a method named here is not
 /// there.
 struct CompareMethods {
-  std::vector<std::string> scores;  ///< columns, in their order; empty: all
-  std::string against;
-  std::vector<std::string> aside;
+  std::vector<std::string> scores = {};  ///< columns, in their order; empty: all
+  std::string against = {};
+  std::vector<std::string> aside = {};
   double confidence = 0.95;
   IntervalKind interval = IntervalKind::student;
   int samples = 10000;

@@ -4,8 +4,6 @@
 
 namespace talkgraph {
 
-void register_statistics(Registry& registry) {
-  registry.add<CompareMethods>();
-}
+void register_statistics(Registry& registry) { registry.add<CompareMethods>(); }
 
 }  // namespace talkgraph

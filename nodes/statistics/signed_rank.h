@@ -7,11 +7,11 @@ namespace talkgraph {
 
 /// Wilcoxon's signed-rank test of paired values.
 struct SignedRank {
-  std::size_t pairs = 0;   ///< that differ
-  double statistic = 0;    ///< the smaller of the rank sums of positive and of negative differences
-  double p = 1;            ///< two-sided
-  double effect = 0;       ///< matched-pairs rank-biserial correlation, (W₊ − W₋) / (W₊ + W₋); 0 if no pair differs
-  bool exact = true;       ///< p is not of the normal approximation
+  std::size_t pairs = 0;  ///< that differ
+  double statistic = 0;   ///< the smaller of the rank sums of positive and of negative differences
+  double p = 1;           ///< two-sided
+  double effect = 0;  ///< matched-pairs rank-biserial correlation, (W₊ − W₋) / (W₊ + W₋); 0 if no pair differs
+  bool exact = true;  ///< p is not of the normal approximation
 };
 
 /// Are differences as often and as far above 0 as below? Differences of 0 are left out (Wilcoxon 1945), equal sizes

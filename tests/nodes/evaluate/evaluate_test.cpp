@@ -3,8 +3,11 @@
 #include <cmath>
 
 #include "graph/random.h"
+#include "nodes/evaluate/columns.h"
 #include "nodes/evaluate/compare.h"
 #include "nodes/evaluate/curves.h"
+#include "nodes/evaluate/dimensions.h"
+#include "nodes/evaluate/join.h"
 #include "nodes/evaluate/mouth_lag.h"
 #include "nodes/evaluate/mouth_opening.h"
 #include "nodes/evaluate/score.h"
@@ -133,6 +136,51 @@ TEST(Compare, StacksRowsUnderTheirNames) {
   EXPECT_EQ(t.cells[1][0], 2);
   b.columns[0] = "other";
   EXPECT_THROW(Compare{}({{"ridge", a}, {"SSGPDM", b}}), std::runtime_error);
+}
+
+TEST(PickColumns, TakesWhatBelongsToThem) {
+  const Table table{
+      "all", "method", {"acc", "acc std", "acc p", "accuracy", "lve", "sequences"}, {"a"}, {{1, 2, 3, 4, 5, 6}}};
+  const Table t = PickColumns{{"lve", "acc"}, "some"}(table);
+  EXPECT_EQ(t.title, "some");
+  EXPECT_EQ(t.columns, (std::vector<std::string>{"lve", "acc", "acc std", "acc p"}));
+  EXPECT_EQ(t.cells[0], (std::vector<double>{5, 1, 2, 3}));
+  EXPECT_EQ(PickColumns{}(table).title, "all");
+  EXPECT_THROW((PickColumns{{"amse"}, ""}(table)), std::runtime_error);
+}
+
+TEST(JoinScores, TakesAllThatAreThere) {
+  const Scores a{{{"acc", 1}}}, b{{{"lve", 2}}};
+  EXPECT_EQ(JoinScores{}(a, nullptr, &b, nullptr, nullptr, nullptr, nullptr).values,
+            (std::map<std::string, double>{{"acc", 1}, {"lve", 2}}));
+  EXPECT_THROW(JoinScores{}(a, &b, &a, nullptr, nullptr, nullptr, nullptr), std::runtime_error);
+}
+
+TEST(ScoreDimensions, ScoresEachByItselfAndAveragesOverSequences) {
+  Eigen::MatrixXd z(4, 2), p(4, 2);
+  z << 1, 1, 2, 0, 3, -1, 50, 50;
+  p << 2, 1, 4, 1, 6, 1, 0, 0;
+  const Mask speech{{1, 1, 1, 0}};
+  const Collected<Track> truth = {{"a", track(z)}, {"b", track(z)}, {"c", track(z)}, {"d", track(z)}};
+  const Collected<Track> said = {{"b", track(z)}, {"a", track(p)}, {"c", track(p)}};
+  const Table t = ScoreDimensions{}(truth, said, {{"a", speech}, {"b", speech}, {"c", {{0, 0, 0, 0}}}});
+  EXPECT_EQ(t.rows, (std::vector<std::string>{"1", "2"}));
+  EXPECT_EQ(t.columns, (std::vector<std::string>{"acc", "acc std", "l1", "l1 std", "l2", "l2 std", "mse", "mse std",
+                                                 "linf", "linf std", "range", "range std", "sequences"}));
+  const auto cell = [&](std::size_t row, std::size_t column) { return t.cells[row][column]; };
+  EXPECT_NEAR(cell(0, 0), 1, 1e-12);
+  EXPECT_NEAR(cell(1, 0), 0.5, 1e-12) << "0 of a sequence whose prediction does not vary";
+  EXPECT_NEAR(cell(0, 2), (1 + 2 + 3) / 3.0 / 2, 1e-12);
+  EXPECT_NEAR(cell(0, 4), std::sqrt(14 / 3.0) / 2, 1e-12);
+  EXPECT_NEAR(cell(0, 6), 14 / 3.0 / 2, 1e-12);
+  EXPECT_NEAR(cell(0, 8), 3 / 2.0, 1e-12);
+  EXPECT_NEAR(cell(0, 10), (2 + 1) / 2.0, 1e-12);
+  EXPECT_EQ(cell(0, 12), 2);
+  EXPECT_TRUE(ScoreDimensions{}({}, {}, {}).rows.empty());
+  EXPECT_THROW(ScoreDimensions{}(truth, {{"a", track(p.leftCols(1))}}, {{"a", speech}}), std::runtime_error);
+  EXPECT_THROW(ScoreDimensions{}({{"a", track(z)}, {"b", track(z.leftCols(1))}},
+                                 {{"a", track(z)}, {"b", track(z.leftCols(1))}}, {{"a", speech}, {"b", speech}}),
+               std::runtime_error);
 }
 
 // A mouth that opens with the loudness of the sound, `late` frames later.

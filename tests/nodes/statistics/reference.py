@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 from scipy import stats
+from scipy.optimize import brentq
 
 few = [0.5, -1.25, 2.0, 3.5, -0.75, 4.25, 1.0, 2.75, -3.0, 5.5]
 tied = [1, 1, -1, 2, 2, -2, 3, 3, -4, 5, 5, 5]
@@ -29,13 +30,19 @@ def corrected(p, rule):  # by their definitions
     return out
 
 
+def student_interval(values, confidence):  # stats.t.ppf is right to nine digits only, its cdf to all
+    n = len(values)
+    t = brentq(lambda t: stats.t.cdf(t, n - 1) - (1 + confidence) / 2, 0, 100, xtol=1e-15, rtol=1e-15)
+    return np.mean(values) - t * stats.sem(values), np.mean(values) + t * stats.sem(values)
+
+
 show = lambda *values: print(", ".join(f"{v:.17g}" for v in values))
 show(*stats.wilcoxon(few, mode="exact"))
 show(*stats.wilcoxon([5, 4, -3, 6, 7.5, 8, 9.25, 10], mode="exact"))
 show(*signed_rank_by_all_signs(tied))
 show(*stats.wilcoxon(many, mode="approx", correction=False, zero_method="wilcox"))
-show(*stats.t.interval(0.95, len(plain) - 1, np.mean(plain), stats.sem(plain)))
-show(*stats.t.interval(0.99, len(plain) - 1, np.mean(plain), stats.sem(plain)))
+show(*student_interval(plain, 0.95))
+show(*student_interval(plain, 0.99))
 show(np.mean(plain), np.std(plain, ddof=1))
 p = np.array([0.04, 0.001, 0.2, 0.013, 0.013, 0.9])
 show(*corrected(p, "holm"))

@@ -1,0 +1,117 @@
+#include "nodes/statistics/methods.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "nodes/statistics/register.h"
+
+namespace talkgraph {
+namespace {
+
+/// Scores of sequences a, b, ...: acc, and twice as much error.
+Table scores(const std::vector<double>& acc) {
+  Table t{"", "sequence", {"acc", "error"}, {}, {}};
+  for (const double value : acc) {
+    t.rows.emplace_back(1, static_cast<char>('a' + t.rows.size()));
+    t.cells.push_back({value, 2 * value});
+  }
+  return t;
+}
+
+double cell(const Table& t, const std::string& row, const std::string& column) {
+  const auto r = std::find(t.rows.begin(), t.rows.end(), row) - t.rows.begin();
+  const auto c = std::find(t.columns.begin(), t.columns.end(), column) - t.columns.begin();
+  return t.cells.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
+}
+
+const Collected<Table> kMethods = {{"recorded", scores({1, 1, 1, 1, 1, 1})},
+                                   {"mean", scores({0, 0, 0, 0, 0, 0})},
+                                   {"ridge", scores({0.4, 0.5, 0.6, 0.5, 0.3, 0.2})},
+                                   {"SSGPDM", scores({0.6, 0.75, 0.55, 0.7, 0.8, 0.4})}};
+
+CompareMethods::Out compare(const CompareMethods& node, const Collected<Table>& methods = kMethods) {
+  Random random(1);
+  return node(methods, random);
+}
+
+TEST(CompareMethods, DescribesAndTestsEachMethod) {
+  const Table t = compare({.against = "SSGPDM", .aside = {"recorded"}}).table;
+  EXPECT_EQ(t.rows, kMethods.keys());
+  EXPECT_EQ(t.columns, (std::vector<std::string>{"acc", "acc std", "acc low", "acc high", "acc p", "error", "error std",
+                                                 "error low", "error high", "error p", "sequences"}));
+  const auto interval = student_interval({0.4, 0.5, 0.6, 0.5, 0.3, 0.2}, 0.95);
+  EXPECT_NEAR(cell(t, "ridge", "acc"), 2.5 / 6, 1e-12);
+  EXPECT_NEAR(cell(t, "ridge", "error"), 5 / 6.0, 1e-12);
+  EXPECT_NEAR(cell(t, "ridge", "acc low"), interval.low, 1e-12);
+  EXPECT_NEAR(cell(t, "ridge", "acc high"), interval.high, 1e-12);
+  EXPECT_EQ(cell(t, "ridge", "sequences"), 6);
+  // mean: 6 of 6 below, p = 2/64; ridge: 5 of 6, the one above smallest, p = 4/64. Holm: times 2, times 1.
+  EXPECT_NEAR(cell(t, "mean", "acc p"), 4 / 64.0, 1e-12);
+  EXPECT_NEAR(cell(t, "ridge", "acc p"), 4 / 64.0, 1e-12);
+  EXPECT_TRUE(std::isnan(cell(t, "SSGPDM", "acc p")));
+  EXPECT_TRUE(std::isnan(cell(t, "recorded", "acc p")));
+}
+
+TEST(CompareMethods, ComparesEveryPair) {
+  const Table t = compare({.scores = {"acc"}, .aside = {"recorded"}, .correction = Correction::none}).pairs;
+  EXPECT_EQ(t.rows, (std::vector<std::string>{"mean - ridge", "mean - SSGPDM", "ridge - SSGPDM"}));
+  EXPECT_EQ(t.columns, (std::vector<std::string>{"acc", "acc p", "acc effect"}));
+  EXPECT_NEAR(cell(t, "mean - ridge", "acc"), -2.5 / 6, 1e-12);
+  EXPECT_NEAR(cell(t, "mean - ridge", "acc p"), 2 / 64.0, 1e-12);
+  EXPECT_EQ(cell(t, "mean - ridge", "acc effect"), -1);
+  EXPECT_NEAR(cell(t, "ridge - SSGPDM", "acc p"), 4 / 64.0, 1e-12);
+  EXPECT_NEAR(cell(t, "ridge - SSGPDM", "acc effect"), -19 / 21.0, 1e-12);
+}
+
+TEST(CompareMethods, PairsSequencesByTheirNamesAndLeavesOutWhatIsMissing) {
+  Table few = scores({0.1, 0.2, 0.3, 0.4});
+  few.rows = {"f", "e", "d", "a"};
+  few.cells[0][0] = NAN;
+  const auto out = compare({.scores = {"acc"}, .against = "SSGPDM"}, {{"few", few}, {"SSGPDM", kMethods[3]}});
+  EXPECT_NEAR(cell(out.table, "few", "acc"), 0.3, 1e-12);
+  EXPECT_EQ(cell(out.table, "few", "sequences"), 4);
+  EXPECT_NEAR(cell(out.pairs, "few - SSGPDM", "acc"), ((0.2 - 0.8) + (0.3 - 0.7) + (0.4 - 0.6)) / 3, 1e-12);
+  EXPECT_NEAR(cell(out.table, "few", "acc p"), 2 / 8.0, 1e-12);
+}
+
+TEST(CompareMethods, WithoutAnythingToCompare) {
+  const auto none = compare({}, {});
+  EXPECT_TRUE(none.table.rows.empty());
+  EXPECT_TRUE(none.pairs.rows.empty());
+  const auto empty = compare({.against = "a"}, {{"a", scores({})}, {"b", scores({})}});
+  EXPECT_TRUE(std::isnan(cell(empty.table, "b", "acc p")));
+  EXPECT_TRUE(std::isnan(cell(empty.table, "b", "acc")));
+  EXPECT_TRUE(std::isnan(cell(empty.pairs, "a - b", "acc effect")));
+}
+
+TEST(CompareMethods, BootstrapsIntervals) {
+  const Table t = compare({.interval = IntervalKind::bootstrap}).table;
+  EXPECT_GT(cell(t, "ridge", "acc low"), 0.2);
+  EXPECT_LT(cell(t, "ridge", "acc low"), cell(t, "ridge", "acc"));
+  EXPECT_LT(cell(t, "ridge", "acc high"), 0.6);
+  EXPECT_EQ(std::count(t.columns.begin(), t.columns.end(), "acc p"), 0) << "nothing to test against";
+}
+
+TEST(CompareMethods, RefusesWhatDoesNotFit) {
+  EXPECT_THROW(compare({.against = "HMM"}), std::runtime_error);
+  EXPECT_THROW(compare({.aside = {"HMM"}}), std::runtime_error);
+  EXPECT_THROW(compare({.scores = {"amse"}}), std::runtime_error);
+  Table other = scores({1});
+  other.columns[1] = "amse";
+  EXPECT_THROW(compare({}, {{"a", scores({1})}, {"b", other}}), std::runtime_error);
+  Table twice = scores({1, 2});
+  twice.rows[1] = "a";
+  EXPECT_THROW(compare({}, {{"a", twice}}), std::runtime_error);
+  EXPECT_THROW(compare({}, {{"a", scores({INFINITY})}}), std::runtime_error);
+}
+
+TEST(RegisterStatistics, DescribesEveryNode) {
+  Registry registry;
+  register_statistics(registry);
+  EXPECT_TRUE(registry.find("statistics.methods"));
+}
+
+}  // namespace
+}  // namespace talkgraph
