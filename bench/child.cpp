@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include <chrono>
 #include <cstring>
 #include <stdexcept>
 
@@ -27,7 +28,8 @@ double cpu_time() {
   return seconds(usage);
 }
 
-double child_cpu_time(const std::vector<std::string>& command) {
+Usage child_usage(const std::vector<std::string>& command) {
+  const auto start = std::chrono::steady_clock::now();
   std::vector<char*> arguments;
   for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
@@ -42,7 +44,10 @@ double child_cpu_time(const std::vector<std::string>& command) {
   rusage usage{};
   wait4(pid, &status, 0, &usage);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw std::runtime_error(command[0] + " failed");
-  return seconds(usage);
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return {seconds(usage), wall, 1024.0 * static_cast<double>(usage.ru_maxrss)};
 }
+
+double child_cpu_time(const std::vector<std::string>& command) { return child_usage(command).cpu; }
 
 }  // namespace talkgraph::bench

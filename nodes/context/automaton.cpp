@@ -68,4 +68,15 @@ std::string state_label(const Vlmm& vlmm, const std::string& context) {
   return alike;
 }
 
+std::string state_label(const Vlmm& vlmm, const std::string& context, std::int64_t most) {
+  const std::string label = state_label(vlmm, context);
+  if (phone_count(label) <= most) return label;
+  const auto phones = label_phones(label);
+  return state_label(vlmm, join_phones(phones, phones.size() - static_cast<std::size_t>(most), phones.size()));
+}
+
+std::string last_phone(const std::string& label) { return label.substr(label.rfind('-') + 1); }
+
+std::int64_t phone_count(const std::string& label) { return 1 + std::count(label.begin(), label.end(), '-'); }
+
 }  // namespace talkgraph

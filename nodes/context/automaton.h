@@ -50,5 +50,12 @@ class AutomatonReader {
 /// for an unknown phone, the phone of its viseme with most training windows;
 /// if there is none, the phone itself.
 std::string state_label(const Vlmm& vlmm, const std::string& context);
+/// The same where only the last `most` phones of the context are there; `most` ≥ 1.
+std::string state_label(const Vlmm& vlmm, const std::string& context, std::int64_t most);
+
+/// The phone that a label ends in.
+std::string last_phone(const std::string& label);
+/// How many phones a label has.
+std::int64_t phone_count(const std::string& label);
 
 }  // namespace talkgraph

@@ -5,6 +5,7 @@
 #include "nodes/context/perplexity.h"
 #include "nodes/context/sample.h"
 #include "nodes/context/segment.h"
+#include "nodes/context/segment_online.h"
 #include "nodes/context/train.h"
 #include "nodes/context/windows.h"
 
@@ -15,6 +16,7 @@ void register_context(Registry& registry) {
   registry.add<ContextPerplexity>();
   registry.add<ContextSample>();
   registry.add<ContextSegment>();
+  registry.add<ContextSegmentOnline>();
   registry.add<ContextTrain>();
   registry.add<ContextWindows>();
   registry.add<InspectContexts>();

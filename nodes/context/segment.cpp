@@ -3,22 +3,6 @@
 #include "nodes/context/automaton.h"
 
 namespace talkgraph {
-namespace {
-
-std::string last_phone(const std::string& label) { return label.substr(label.rfind('-') + 1); }
-
-std::int64_t length_of(const std::string& label) { return static_cast<std::int64_t>(label_phones(label).size()); }
-
-/// The state for a context of which only the last `most` phones are there.
-std::string fitting_label(const Vlmm& vlmm, const std::string& context, std::int64_t most) {
-  const std::string label = state_label(vlmm, context);
-  if (length_of(label) <= most) return label;
-  const auto phones = label_phones(label);
-  return state_label(vlmm, join_phones(phones, phones.size() - static_cast<std::size_t>(most), phones.size()));
-}
-
-}  // namespace
-
 SegmentTrack ContextSegment::operator()(const Vlmm& vlmm, const FrameLabels& contexts) const {
   const auto frames = static_cast<std::int64_t>(contexts.labels.size());
   if (states == StateKind::one && frames > 0) return {{{one_state, 0, frames}}, frames, contexts.rate};
@@ -31,8 +15,8 @@ SegmentTrack ContextSegment::operator()(const Vlmm& vlmm, const FrameLabels& con
     const Unit& last = parts[static_cast<std::size_t>(end - 1)];
     const std::string& context =
         states == StateKind::phones ? last.symbol : contexts.labels[static_cast<std::size_t>(last.start)];
-    const std::string label = fitting_label(vlmm, context, end);
-    end -= length_of(label);
+    const std::string label = state_label(vlmm, context, end);
+    end -= phone_count(label);
     const auto start = parts[static_cast<std::size_t>(end)].start;
     const auto length = last.start + last.length - start;
     if (merge && !backwards.empty() && backwards.back().label == label)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nodes/latent/clock.h"
 #include "nodes/latent/compact.h"
 #include "nodes/latent/sequences.h"
 #include "nodes/latent/sgpdm_objective.h"
@@ -63,8 +64,24 @@ std::optional<BackProjection> back_projection(const LatentTraining& options, con
   return std::nullopt;
 }
 
+DynamicsForm form_of(LatentDynamics dynamics) {
+  switch (dynamics) {
+    case LatentDynamics::difference:
+      return DynamicsForm::difference;
+    case LatentDynamics::time:
+      return DynamicsForm::time;
+    case LatentDynamics::phase:
+      return DynamicsForm::phase;
+    case LatentDynamics::none:
+    case LatentDynamics::absolute:
+      break;
+  }
+  return DynamicsForm::absolute;
+}
+
 Kernel dynamics_kernel(const LatentTraining& options) {
-  return {{RbfTerm{0.1, options.dynamics_inverse_width}, LinearTerm{1}}};
+  const double variance = is_timed(form_of(options.dynamics)) ? 1 : 0.1;
+  return {{RbfTerm{variance, options.dynamics_inverse_width}, LinearTerm{1}}};
 }
 
 /// `fixed` may name parameters of dynamics whether or not there are any.
@@ -76,6 +93,17 @@ std::vector<std::string> fixed_without_dynamics(const LatentTraining& options) {
   return fixed;
 }
 
+/// Dynamics whose input is time.
+GpStream stream_of_times(LatentTraining options, const SgpdmProblem& problem) {
+  const Eigen::MatrixXd times = times_of(problem.lengths, problem.form);
+  const Eigen::MatrixXd inducing = spread_times(times, options.dynamics_inverse_width, options.inducing);
+  options.inducing = static_cast<int>(inducing.rows());
+  GpStream stream =
+      stream_of(options, "dynamics", dynamics_kernel(options), times, problem.lengths, problem.dynamics_weight);
+  if (stream.inducing.rows() > 0) stream.inducing = inducing;
+  return stream;
+}
+
 /// p(X), if any: dynamics and what first points have, or the same for every point.
 void add_latent_prior(const LatentTraining& options, SgpdmProblem& problem) {
   const Lengths& lengths = problem.lengths;
@@ -85,6 +113,8 @@ void add_latent_prior(const LatentTraining& options, SgpdmProblem& problem) {
     if (!options.latent_prior) return;
     problem.lengths.assign(frames, 1);
     problem.first_variance = 1;
+  } else if (steps && is_timed(problem.form)) {
+    problem.dynamics = stream_of_times(options, problem);
   } else {
     if (!steps || options.first_point == FirstPoint::variance) problem.first_variance = options.first_variance;
     if (!steps) return;
@@ -101,7 +131,7 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
   problem.back_constraint = back_projection(options, frames[0].scaled(), start);
   if (problem.back_constraint)
     problem.latents = problem.back_constraint->compute(problem.back_constraint->parameters());
-  problem.form = options.dynamics == LatentDynamics::difference ? DynamicsForm::difference : DynamicsForm::absolute;
+  problem.form = form_of(options.dynamics);
   problem.prior_deviation = options.prior_deviation;
 
   Eigen::Index larger = 0;
@@ -196,7 +226,9 @@ TrainedLatents train_latents(const LatentTraining& options, const std::string& s
   if (!constrained) trained.first_frames = rounded(trained.first_frames, 12);
   trained.dynamics = objective.dynamics(parameters);
   if (trained.dynamics) {
-    trained.dynamics = compacted(std::move(*trained.dynamics), trained.latents);
+    const bool timed = is_timed(trained.form);
+    trained.dynamics =
+        compacted(std::move(*trained.dynamics), timed ? times_of(lengths, trained.form) : trained.latents);
     trained.dynamics->mean = Eigen::RowVectorXd::Zero(d);
     trained.dynamics->scale = Eigen::RowVectorXd::Ones(d);
   }

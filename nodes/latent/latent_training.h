@@ -40,11 +40,13 @@ template <>
 inline constexpr EnumNames<ObservationKernel, 2> enum_names<ObservationKernel>{
     {{ObservationKernel::rbf, "rbf"}, {ObservationKernel::ard, "ard"}}};
 
-enum class LatentDynamics { none, absolute, difference };
+enum class LatentDynamics { none, absolute, difference, time, phase };
 template <>
-inline constexpr EnumNames<LatentDynamics, 3> enum_names<LatentDynamics>{{{LatentDynamics::none, "none"},
+inline constexpr EnumNames<LatentDynamics, 5> enum_names<LatentDynamics>{{{LatentDynamics::none, "none"},
                                                                           {LatentDynamics::absolute, "absolute"},
-                                                                          {LatentDynamics::difference, "difference"}}};
+                                                                          {LatentDynamics::difference, "difference"},
+                                                                          {LatentDynamics::time, "time"},
+                                                                          {LatentDynamics::phase, "phase"}}};
 
 enum class BackConstraintKind { none, mlp, kbr };
 template <>
@@ -63,7 +65,8 @@ inline constexpr EnumNames<FirstPoint, 2> enum_names<FirstPoint>{
 /// parameters, and the maximisation of Eqn 4.69 over latent points (or a
 /// back-constraint's parameters), inducing points and kernel parameters.
 ///
-/// Observation kernels are RBF (or ARD) + bias + white, that of the dynamics RBF + linear + white. A process of at most
+/// Observation kernels are RBF (or ARD) + bias + white, that of the dynamics RBF + linear + white, whose RBF starts at
+/// variance 0.1, or 1 where its input is time, which alone says where a point is. A process of at most
 /// `inducing` frames is exact whatever the approximation. Without dynamics latent points have no prior (or N(0, I),
 /// `latent_prior`): the objective is then the density of the frames, where nothing weighs a stream or a parameter. The
 /// latent dimension is lowered to the largest stream's and to N − 1 (at least 1), with a warning. Scales are as
@@ -169,7 +172,9 @@ void describe_training(Description<Node>& d) {
           "inducing points, at most");
   param("inducing", &LatentTraining::inducing).at_least(1).doc("inducing points of each process");
   param("dynamics", &LatentTraining::dynamics)
-      .doc("a process from each latent point to the next, or to the difference from it; none: a GPLVM");
+      .doc(
+          "a process from each latent point to the next, or to the difference from it; or from the frame's number in "
+          "its window (time), or from the share of the window that has passed (phase), to the point; none: a GPLVM");
   param("dynamics_bias", &LatentTraining::dynamics_bias)
       .doc("the dynamics weigh larger dimension / latent dimension, in synthesis too");
   param("dynamics_inverse_width", &LatentTraining::dynamics_inverse_width)

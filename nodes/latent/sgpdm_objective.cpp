@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "nodes/latent/clock.h"
+
 namespace talkgraph {
 
 SgpdmObjective::SgpdmObjective(SgpdmProblem problem) : problem_(std::move(problem)) {
@@ -14,6 +16,10 @@ SgpdmObjective::SgpdmObjective(SgpdmProblem problem) : problem_(std::move(proble
 }
 
 void SgpdmObjective::find_steps() {
+  if (timed()) {
+    in_ = times_of(problem_.lengths, problem_.form);
+    return;
+  }
   Eigen::Index row = 0;
   for (const auto length : problem_.lengths)
     for (std::int64_t t = 0; t < length; ++t, ++row) {
@@ -121,7 +127,7 @@ void SgpdmObjective::fix() {
 }
 
 SgpdmObjective::View SgpdmObjective::inducing_view(const Place& place, const Eigen::VectorXd& p) const {
-  return {p.data() + place.inducing, place.stream->inducing.rows(), problem_.latents.cols()};
+  return {p.data() + place.inducing, place.stream->inducing.rows(), place.stream->inducing.cols()};
 }
 
 void SgpdmObjective::place_latents(const Eigen::VectorXd& p) {
@@ -140,6 +146,10 @@ void SgpdmObjective::place_outputs(Place& place, const Eigen::VectorXd& p) const
 
 void SgpdmObjective::gather_steps() {
   Eigen::MatrixXd& out = places_.back().outputs;
+  if (timed()) {
+    out = x_;
+    return;
+  }
   in_.resize(static_cast<Eigen::Index>(from_.size()), x_.cols());
   out.resize(in_.rows(), x_.cols());
   for (Eigen::Index i = 0; i < in_.rows(); ++i) {
@@ -188,6 +198,10 @@ double SgpdmObjective::dynamics_likelihood(Place& place, const Eigen::VectorXd& 
   if (!gradient) return value;
   const double weight = place.stream->weight;
   GpGradient& g = place.gradient;
+  if (timed()) {
+    x_gradient_ += weight * g.outputs;
+    return value;
+  }
   if (problem_.form == DynamicsForm::difference) g.inputs -= g.outputs;
   for (Eigen::Index i = 0; i < in_.rows(); ++i) {
     x_gradient_.row(from_[static_cast<std::size_t>(i)]) += weight * g.inputs.row(i);

@@ -82,6 +82,7 @@ class SgpdmObjective : public Maximand {
   using View = Eigen::Map<const Eigen::MatrixXd>;
 
   double compute(const Eigen::VectorXd& parameters, Eigen::VectorXd* gradient) override;
+  bool timed() const { return problem_.dynamics && is_timed(problem_.form); }
   void find_steps();
   void lay_out();
   void fix();

@@ -8,6 +8,7 @@
 #include "nodes/mapping/dpds_synthesise.h"
 #include "nodes/mapping/joint_gmm.h"
 #include "nodes/mapping/phone_gaussians.h"
+#include "nodes/mapping/resegment.h"
 #include "nodes/mapping/shared_lds.h"
 #include "nodes/mapping/shared_lds_synthesise.h"
 #include "nodes/mapping/slds.h"
@@ -24,6 +25,7 @@ void register_mapping(Registry& registry) {
   registry.add<AssembleSsgpdm>();
   registry.add<DecodeDpds>();
   registry.add<PredictContextGp>();
+  registry.add<Resegment>();
   registry.add<SynthesiseCoupledHmm>();
   registry.add<SynthesiseDpds>();
   registry.add<SynthesiseJointGmm>();

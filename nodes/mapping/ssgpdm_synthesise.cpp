@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "nodes/latent/back_constraint.h"
+#include "nodes/latent/clock.h"
 #include "nodes/latent/scg.h"
 #include "nodes/latent/sequence_objective.h"
 #include "nodes/mapping/ssgpdm.h"
@@ -103,6 +104,11 @@ class SegmentSearch {
   void predict() {
     optimise(0, 1, false);
     Predictive h;
+    if (is_timed(state_.form)) {
+      h.compute(*state_.dynamics, times_of({x_.rows()}, state_.form));
+      x_.bottomRows(x_.rows() - 1) = h.mean().bottomRows(x_.rows() - 1);
+      return;
+    }
     for (Eigen::Index t = 1; t < x_.rows(); ++t) {
       h.compute(*state_.dynamics, x_.row(t - 1));
       x_.row(t) = h.mean();

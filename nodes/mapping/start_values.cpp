@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "graph/random.h"
+#include "nodes/latent/clock.h"
 #include "nodes/latent/hmm.h"
 #include "nodes/latent/predictive.h"
 
@@ -42,6 +43,13 @@ Eigen::MatrixXd log_densities(const Eigen::MatrixXd& a, const Eigen::MatrixXd& m
   const Eigen::RowVectorXd normaliser =
       static_cast<double>(a.cols()) * (variances.array() * (2 * std::numbers::pi)).log();
   return -0.5 * ((squares.array().max(0.0).rowwise() / variances.transpose().array()).rowwise() + normaliser.array());
+}
+
+/// ln p of each state at each frame given its time, T × states.
+Eigen::MatrixXd log_densities_in_time(const Sgpdm& state, const Eigen::MatrixXd& points, Eigen::Index frames) {
+  Predictive h;
+  h.compute(*state.dynamics, times_of({frames}, state.form));
+  return log_densities(points, h.mean(), h.variance()).transpose();
 }
 
 /// ln p of each step, from the state of a row to that of a column.
@@ -93,10 +101,15 @@ Eigen::MatrixXd likeliest_path(const Sgpdm& state, const Eigen::MatrixXd& audio,
   const Eigen::MatrixXd points = state.latents(some_of(state.latents.rows(), most), Eigen::all);
   Predictive f;
   f.compute(state.audio, points);
-  const Eigen::VectorXd nowhere = Eigen::VectorXd::Constant(1, state.first_variance);
-  const MarkovChain chain{log_densities(points, Eigen::MatrixXd::Zero(1, points.cols()), nowhere),
-                          log_transitions(state, points)};
-  const auto path = viterbi(chain, log_densities(audio, f.mean(), f.variance())).states;
+  Eigen::MatrixXd observations = log_densities(audio, f.mean(), f.variance());
+  MarkovChain chain{Eigen::MatrixXd::Zero(points.rows(), 1), Eigen::MatrixXd::Zero(points.rows(), points.rows())};
+  if (state.dynamics && is_timed(state.form)) {
+    observations += log_densities_in_time(state, points, audio.rows());
+  } else {
+    const Eigen::VectorXd nowhere = Eigen::VectorXd::Constant(1, state.first_variance);
+    chain = {log_densities(points, Eigen::MatrixXd::Zero(1, points.cols()), nowhere), log_transitions(state, points)};
+  }
+  const auto path = viterbi(chain, observations).states;
   return points(path, Eigen::all);
 }
 

@@ -2,36 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "nodes/smooth/butterworth.h"
+
 namespace talkgraph {
-namespace {
-
-/// y[t] = b0 x[t] + b1 x[t-1] + b2 x[t-2] - a1 y[t-1] - a2 y[t-2]
-struct Biquad {
-  double b0, b1, b2, a1, a2;
-
-  /// Filters in place, begun as if the first sample had stood for ever.
-  void run(Eigen::Ref<Eigen::VectorXd> x) const {
-    double x1 = x[0], x2 = x[0], y1 = x[0], y2 = x[0];
-    for (Eigen::Index t = 0; t < x.size(); ++t) {
-      const double y = b0 * x[t] + b1 * x1 + b2 * x2 - a1 * y1 - a2 * y2;
-      x2 = x1, x1 = x[t], y2 = y1, y1 = y;
-      x[t] = y;
-    }
-  }
-};
-
-/// Bilinear transform of the Butterworth prototype.
-Biquad butterworth(double cutoff, double rate) {
-  const double k = std::tan(std::numbers::pi * cutoff / rate), norm = 1 / (1 + std::numbers::sqrt2 * k + k * k);
-  return {k * k * norm, 2 * k * k * norm, k * k * norm, 2 * (k * k - 1) * norm,
-          (1 - std::numbers::sqrt2 * k + k * k) * norm};
-}
-
-}  // namespace
-
 Track Lowpass::operator()(const Track& track) const {
   if (!track.values.allFinite()) throw std::runtime_error("a track with NaN or infinite values cannot be smoothed");
   const double rate = track.rate.value();

@@ -185,8 +185,8 @@ void check_latents(const StoredModel& stored, const Model& m, const GaussianProc
   const bool some = std::all_of(m.lengths.begin(), m.lengths.end(), [&](auto l) { return l > 0 && l <= n; });
   stored.require(some && std::accumulate(m.lengths.begin(), m.lengths.end(), std::int64_t{0}) == n, "lengths",
                  "do not sum to the number of latent points");
-  if (m.dynamics) stored.process("dynamics", *m.dynamics, d, d);
-  stored.require(m.form == DynamicsForm::absolute || m.form == DynamicsForm::difference, "form", "is unknown");
+  stored.require(m.form >= DynamicsForm::absolute && m.form <= DynamicsForm::phase, "form", "is unknown");
+  if (m.dynamics) stored.process("dynamics", *m.dynamics, is_timed(m.form) ? 1 : d, d);
   if (m.back_constraint) check_back_constraint(stored, *m.back_constraint, first.mean.size(), d);
   stored.not_negative("dynamics_bias", m.dynamics_bias);
   stored.positive("first_variance", m.first_variance);

@@ -78,9 +78,13 @@ void fields(Archive& ar, BackConstraint& b);
 
 /// How latent points follow each other.
 enum class DynamicsForm {
-  absolute,   ///< x_t = h(x_{t−1}) + ε
-  difference  ///< x_t = x_{t−1} + h(x_{t−1}) + ε
+  absolute,    ///< x_t = h(x_{t−1}) + ε
+  difference,  ///< x_t = x_{t−1} + h(x_{t−1}) + ε
+  time,        ///< x_t = h(t) + ε, t = 0, 1, ... the frame's number in its window
+  phase        ///< x_t = h((t + ½)/T) + ε, the share of its window of T frames
 };
+/// Whether the dynamics know when a latent point is, and not where the one before was.
+constexpr bool is_timed(DynamicsForm form) { return form == DynamicsForm::time || form == DynamicsForm::phase; }
 
 /// A shared Gaussian process dynamical model of one state (docs/method.md §4): audio and
 /// visual features are two processes of one latent trajectory. Without
@@ -92,7 +96,7 @@ struct Sgpdm {
   Eigen::MatrixXd audio_frames;             ///< N × D_Y, scaled: for nearest neighbours
   GaussianProcess audio;                    ///< f: X -> Y
   GaussianProcess visual;                   ///< g: X -> Z
-  std::optional<GaussianProcess> dynamics;  ///< h: x_{t−1} -> x_t, or its difference from x_{t−1}
+  std::optional<GaussianProcess> dynamics;  ///< h, as its form has it
   DynamicsForm form = DynamicsForm::absolute;
   std::optional<BackConstraint> back_constraint;  ///< b: Y -> X, of scaled frames
   double dynamics_bias = 1;                       ///< weight of the dynamics in sequence optimisation

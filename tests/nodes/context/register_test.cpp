@@ -8,8 +8,8 @@ namespace {
 TEST(RegisterContext, DescribesEveryNode) {
   Registry registry;
   register_context(registry);
-  for (const char* name : {"context.train", "context.decode", "context.segment", "context.windows",
-                           "context.perplexity", "context.inspect", "context.sample"})
+  for (const char* name : {"context.train", "context.decode", "context.segment", "context.segment_online",
+                           "context.windows", "context.perplexity", "context.inspect", "context.sample"})
     EXPECT_TRUE(registry.find(name)) << name;
 }
 

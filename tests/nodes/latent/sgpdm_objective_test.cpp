@@ -34,11 +34,13 @@ struct Combination {
 constexpr Eigen::Index block = 2;
 
 GpStream stream(const Combination& c, std::string name, Kernel kernel, const std::vector<std::int64_t>& sequences,
-                double weight, std::uint64_t seed) {
+                double weight, std::uint64_t seed, Eigen::Index inputs = latent) {
   const bool sparse = c.approximation != CovarianceApproximation::full;
-  return {std::move(name), std::move(kernel), sparse ? gaussian(3, latent, seed) : Eigen::MatrixXd(0, latent),
+  return {std::move(name), std::move(kernel), sparse ? gaussian(3, inputs, seed) : Eigen::MatrixXd(0, inputs),
           make_likelihood(c.approximation, sequences, block), weight};
 }
+
+bool timed(const Combination& c) { return c.dynamics == LatentDynamics::time || c.dynamics == LatentDynamics::phase; }
 
 SgpdmProblem problem(const Combination& c) {
   SgpdmProblem p;
@@ -61,9 +63,13 @@ SgpdmProblem problem(const Combination& c) {
     p.back_constraint.emplace(kernel_regression(heard, p.latents, 0.7), heard);
   p.lengths = lengths;
   p.dynamics_weight = 2;
-  if (!c.first_is_noise) p.first_variance = 0.7;
+  if (!c.first_is_noise && !timed(c)) p.first_variance = 0.7;
   if (c.dynamics == LatentDynamics::difference) p.form = DynamicsForm::difference;
-  if (c.dynamics != LatentDynamics::none)
+  if (c.dynamics == LatentDynamics::time) p.form = DynamicsForm::time;
+  if (c.dynamics == LatentDynamics::phase) p.form = DynamicsForm::phase;
+  if (timed(c))
+    p.dynamics = stream(c, "dynamics", {{RbfTerm{1, 3}, LinearTerm{0.7}, WhiteTerm{0.1, 0.01}}}, lengths, 2, 6, 1);
+  else if (c.dynamics != LatentDynamics::none)
     p.dynamics = stream(c, "dynamics", {{RbfTerm{0.3, 3}, LinearTerm{0.7}, WhiteTerm{0.1, 0.01}}}, steps, 2, 6);
   return p;
 }
@@ -97,6 +103,14 @@ double textbook(const Combination& c, const SgpdmProblem& p) {
     const Eigen::MatrixXd scaled = o.values.array().rowwise() / o.scale.array();
     value += o.process.weight *
              (textbook(c, o.process, x, scaled, lengths) - static_cast<double>(frames) * o.scale.array().log().sum());
+  }
+  if (timed(c)) {
+    Eigen::VectorXd times(frames);
+    if (c.dynamics == LatentDynamics::time)
+      times << 0, 1, 2, 0, 0, 1, 2;
+    else
+      times << 1.0 / 6, 0.5, 5.0 / 6, 0.5, 1.0 / 6, 0.5, 5.0 / 6;
+    return value + p.dynamics->weight * textbook(c, *p.dynamics, times, x, lengths);
   }
   if (!p.first_variance && !p.dynamics) return value;
   const double first_variance = p.first_variance ? *p.first_variance : testing::textbook_white(p.dynamics->kernel);
@@ -141,6 +155,15 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Values(BackConstraintKind::none, BackConstraintKind::mlp, BackConstraintKind::kbr),
                        ::testing::Values(LatentDynamics::none, LatentDynamics::absolute, LatentDynamics::difference),
                        ::testing::Values(Kernels::rbf, Kernels::ard, Kernels::one_stream)),
+    name_of_combination);
+
+INSTANTIATE_TEST_SUITE_P(
+    InTime, SgpdmObjectives,
+    ::testing::Combine(::testing::Values(CovarianceApproximation::full, CovarianceApproximation::dtc,
+                                         CovarianceApproximation::fitc, CovarianceApproximation::pitc,
+                                         CovarianceApproximation::variational),
+                       ::testing::Values(BackConstraintKind::none, BackConstraintKind::mlp),
+                       ::testing::Values(LatentDynamics::time, LatentDynamics::phase), ::testing::Values(Kernels::rbf)),
     name_of_combination);
 
 TEST_P(SgpdmObjectives, AreEquation469) {

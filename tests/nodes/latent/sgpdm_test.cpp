@@ -8,6 +8,7 @@
 #include <map>
 
 #include "nodes/latent/back_constraint.h"
+#include "nodes/latent/clock.h"
 #include "nodes/latent/compact.h"
 #include "nodes/latent/gp_likelihood.h"
 #include "nodes/latent/predictive.h"
@@ -78,6 +79,8 @@ TEST(TrainSgpdm, FitsWithEverySetting) {
   std::map<std::string, TrainSgpdm> settings;
   const auto add = [&](const std::string& name) -> TrainSgpdm& { return settings[name] = plain; };
   add("difference").dynamics = LatentDynamics::difference;
+  add("time").dynamics = LatentDynamics::time;
+  add("phase").dynamics = LatentDynamics::phase;
   add("no dynamics").dynamics = LatentDynamics::none;
   add("mlp").back_constraint = BackConstraintKind::mlp;
   add("kbr").back_constraint = BackConstraintKind::kbr;
@@ -523,7 +526,8 @@ TEST(SequenceObjective, GradientsAgreeWithDifferences) {
   const auto data = wavy(8, 5);
   for (const auto approximation : {CovarianceApproximation::full, CovarianceApproximation::fitc,
                                    CovarianceApproximation::pitc, CovarianceApproximation::variational})
-    for (const auto dynamics : {LatentDynamics::none, LatentDynamics::absolute, LatentDynamics::difference}) {
+    for (const auto dynamics : {LatentDynamics::none, LatentDynamics::absolute, LatentDynamics::difference,
+                                LatentDynamics::time, LatentDynamics::phase}) {
       TrainSgpdm train;
       train.approximation = approximation;
       train.dynamics = dynamics;
@@ -535,6 +539,7 @@ TEST(SequenceObjective, GradientsAgreeWithDifferences) {
       for (std::uint64_t draw = 0; draw < 100; ++draw) {
         SequenceObjective objective(model, audio, draw % 2);
         objective.follow(gaussian(1, 6, 4), draw % 3 ? 0.7 : 0);
+        if (draw % 5 == 0) objective.see(gaussian(5, 6, 5));
         const auto check =
             check_gradient(objective, model.latents.topRows(5).reshaped() + 0.3 * gaussian(15, 1, draw).reshaped());
         EXPECT_TRUE(check.evaluated && check.cost_consistent);
@@ -593,6 +598,85 @@ TEST(SequenceObjective, IsTheConditionalOfTheJointDensity) {
     ASSERT_TRUE(objective.evaluate(x.reshaped(), cost, nullptr));
     EXPECT_NEAR(-cost, expected, 1e-9 * std::abs(expected) + 1e-9);
   }
+}
+
+/// Windows of any length that pass the same curve, from its beginning to its end.
+StateData same_curve(const std::vector<int>& lengths) {
+  const auto to_audio = gaussian(3, 8, 101), to_visual = gaussian(3, 6, 102);
+  StateData data{"k-ae-t", {}, {}};
+  for (const int length : lengths) {
+    Eigen::MatrixXd basis(length, 3);
+    for (int t = 0; t < length; ++t) {
+      const double share = (t + 0.5) / length;
+      basis.row(t) << share, std::sin(3 * share), std::cos(5 * share);
+    }
+    const auto seed = data.audio.size();
+    data.audio.push_back(basis * to_audio + 0.02 * gaussian(length, 8, 1000 + seed));
+    data.visual.push_back(basis * to_visual + 0.02 * gaussian(length, 6, 2000 + seed));
+  }
+  return data;
+}
+
+// Windows of 3 to 9 frames: where the share of the window says all, the dynamics find the points of each, which
+// points before cannot, as steps are of any size.
+TEST(TrainSgpdm, DynamicsOfPhaseKnowWhereWindowsOfAnyLengthAre) {
+  Context context;
+  TrainSgpdm train;
+  train.latent_dimension = 2;
+  train.iterations = 60;
+  train.prior_deviation = 0;
+  train.dynamics = LatentDynamics::phase;
+  train.dynamics_inverse_width = 10;
+  const Sgpdm model = train(same_curve({3, 9, 5, 7, 4, 8, 6, 3, 9}), context);
+  ASSERT_TRUE(model.dynamics);
+  EXPECT_EQ(model.form, DynamicsForm::phase);
+  Predictive h;
+  h.compute(*model.dynamics, times_of(model.lengths, model.form));
+  EXPECT_LT((h.mean() - model.latents).squaredNorm(), 0.02 * model.latents.squaredNorm());
+  EXPECT_LT(unexplained(model, same_curve({3, 9, 5, 7, 4, 8, 6, 3, 9})), 0.02);
+}
+
+TEST(TrainSgpdm, OfOneFrameWindowsHasNoDynamicsOfTimeEither) {
+  Context context;
+  TrainSgpdm train;
+  train.dynamics = LatentDynamics::time;
+  const Sgpdm model = train(wavy(12, 1), context);
+  EXPECT_FALSE(model.dynamics);
+  EXPECT_EQ(model.first_variance, train.first_variance);
+}
+
+TEST(TrainSgpdm, InTimeTakesFewInducingPointsOfManyFrames) {
+  Context context;
+  TrainSgpdm train;
+  train.dynamics = LatentDynamics::phase;
+  train.dynamics_inverse_width = 10;
+  train.iterations = 5;
+  train.inducing = 50;
+  const Sgpdm model = train(wavy(40, 6), context);
+  EXPECT_EQ(model.dynamics->basis.cols(), 1);
+  EXPECT_LE(model.dynamics->basis.rows(), 8);
+  EXPECT_EQ(model.audio.basis.rows(), 50);
+  Sgpdm saved = model, loaded;
+  const test::TemporaryFolder folder;
+  const auto path = folder.file("sgpdm.h5");
+  write_hdf5(path, [&](Archive& ar) { fields(ar, saved); });
+  fields(*hdf5_reader(path), loaded);
+  EXPECT_EQ(loaded.form, DynamicsForm::phase);
+  EXPECT_EQ(loaded.dynamics->basis, model.dynamics->basis);
+}
+
+TEST(Clock, SaysWhenFramesAre) {
+  const std::vector<std::int64_t> lengths = {2, 1, 4};
+  EXPECT_EQ(times_of(lengths, DynamicsForm::time).transpose(),
+            (Eigen::RowVectorXd(7) << 0, 1, 0, 0, 1, 2, 3).finished());
+  EXPECT_TRUE(times_of(lengths, DynamicsForm::phase)
+                  .transpose()
+                  .isApprox((Eigen::RowVectorXd(7) << 0.25, 0.75, 0.5, 0.125, 0.375, 0.625, 0.875).finished()));
+  const Eigen::MatrixXd spread = spread_times(times_of(lengths, DynamicsForm::time), 1, 100);
+  EXPECT_EQ(spread.rows(), 7) << "half a frame apart from 0 to 3";
+  EXPECT_EQ(spread(6, 0), 3);
+  EXPECT_EQ(spread_times(times_of(lengths, DynamicsForm::time), 1, 3).rows(), 3);
+  EXPECT_EQ(spread_times(Eigen::MatrixXd::Constant(5, 1, 0.5), 1, 3).rows(), 1);
 }
 
 TEST(Compacted, KeepsPredictionsAndTakesNothingWhereItCannot) {

@@ -151,7 +151,8 @@ TEST(Synthesis, FollowsTheTruthFromEveryStartWithEveryDynamics) {
   const auto s = speech(8);
   Context context;
   const double variance = (s.visual.values.rowwise() - s.visual.values.colwise().mean()).squaredNorm();
-  for (const auto dynamics : {LatentDynamics::none, LatentDynamics::absolute, LatentDynamics::difference}) {
+  for (const auto dynamics : {LatentDynamics::none, LatentDynamics::absolute, LatentDynamics::difference,
+                              LatentDynamics::time, LatentDynamics::phase}) {
     const Ssgpdm states = constrained(dynamics);
     for (const auto initial :
          {LatentInitial::frame, LatentInitial::window, LatentInitial::back_constraint, LatentInitial::hmm})
@@ -192,6 +193,49 @@ double path_score(const Sgpdm& state, const Eigen::MatrixXd& audio, const Eigen:
     score += h.log_density(x.bottomRows(x.rows() - 1));
   }
   return score;
+}
+
+/// The same of dynamics of time: every point by itself.
+double timed_path_score(const Sgpdm& state, const Eigen::MatrixXd& audio, const Eigen::MatrixXd& x) {
+  Predictive f, h;
+  f.compute(state.audio, x);
+  h.compute(*state.dynamics, Eigen::VectorXd::LinSpaced(x.rows(), 0, static_cast<double>(x.rows() - 1)));
+  return f.log_density(audio) + h.log_density(x);
+}
+
+TEST(StartValues, OfTheHiddenMarkovModelInTimeAreTheBestOfAllPaths) {
+  Context context;
+  TrainSgpdm train;
+  train.latent_dimension = 2;
+  train.dynamics = LatentDynamics::time;
+  Sgpdm state = train(half("b", pi, 25, 4), context);
+  state.latents = state.latents({0, 5, 10, 20, 41, 62, 83}, Eigen::all).eval();
+  const Eigen::MatrixXd audio = scaled(state.audio, speech(3).audio.values);
+  const Eigen::MatrixXd found = likeliest_path(state, audio, 0);
+  double best = -1e300;
+  Eigen::MatrixXd x(3, 2);
+  for (Eigen::Index i = 0; i < 7; ++i)
+    for (Eigen::Index j = 0; j < 7; ++j)
+      for (Eigen::Index k = 0; k < 7; ++k) {
+        x << state.latents.row(i), state.latents.row(j), state.latents.row(k);
+        best = std::max(best, timed_path_score(state, audio, x));
+      }
+  EXPECT_NEAR(timed_path_score(state, audio, found), best, 1e-9 * std::abs(best));
+}
+
+TEST(Synthesis, PredictsWhatTheDynamicsOfTimeSay) {
+  Context context;
+  TrainSgpdm train;
+  train.latent_dimension = 2;
+  train.dynamics = LatentDynamics::phase;
+  const Sgpdm state = train(half("b", pi, 25, 4), context);
+  SynthesiseSsgpdm node;
+  node.method = LatentSearch::predict;
+  const Eigen::MatrixXd x = segment_latents(node, state, scaled(state.audio, speech(5).audio.values), {}).points;
+  Predictive h;
+  h.compute(*state.dynamics, Eigen::VectorXd::LinSpaced(5, 0.1, 0.9));
+  EXPECT_LT((x - h.mean()).bottomRows(4).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_GT((x - h.mean()).row(0).norm(), 1e-6) << "the first is optimised";
 }
 
 TEST(StartValues, OfTheHiddenMarkovModelAreTheBestOfAllPaths) {

@@ -9,7 +9,7 @@ namespace {
 TEST(Register, DescribesEveryNode) {
   Registry registry;
   register_smooth(registry);
-  EXPECT_THAT(registry.names(), testing::ElementsAre("smooth.emphasise", "smooth.lowpass"));
+  EXPECT_THAT(registry.names(), testing::ElementsAre("smooth.emphasise", "smooth.lowpass", "smooth.lowpass_online"));
 }
 
 }  // namespace
