@@ -15,6 +15,21 @@ struct TestVoice {
 };
 static void describe(Description<TestVoice>& d) { d.type("test.voice").summary("a voice").output("audio", "1.3 s"); }
 
+/// The same, silent from some time on.
+struct CutVoice {
+  double from = 1.3;  ///< seconds
+  Audio operator()() const {
+    Audio audio = test::voice(1.3);
+    const auto left = std::min<Eigen::Index>(audio.samples.size(), std::lround(from * audio.rate));
+    audio.samples.tail(audio.samples.size() - left).setZero();
+    return audio;
+  }
+};
+static void describe(Description<CutVoice>& d) {
+  d.type("test.cut_voice").summary("a voice that stops").output("audio", "1.3 s");
+  d.param("from", &CutVoice::from).doc("where it stops, seconds");
+}
+
 namespace cli {
 namespace {
 
@@ -72,6 +87,33 @@ TEST_P(Features, ComeStraightAtTheVideoRate) {
   EXPECT_DOUBLE_EQ(track.start, 1001 / 60000.0);
   EXPECT_TRUE(track.values.allFinite());
   expect_chain(track, {.window = 0.05, .rate = Rational(30000, 1001), .centred = true});
+}
+
+Eigen::MatrixXd at_the_video_rate(const std::string& speech, double from) {
+  Registry registry = all_nodes();
+  registry.add<CutVoice>();
+  Diagnostics diagnostics;
+  const auto graph = load_graph_text(
+      "g.json",
+      R"({ "nodes": { "voice": { "type": "test.cut_voice", "params": { "from": )" + std::to_string(from) +
+          R"( } }, "speech": { "graph": ")" + (folder.parent_path() / speech).string() +
+          R"(", "in": { "audio": "voice" } } }, "outputs": { "track": "speech.track" } })",
+      registry, diagnostics);
+  if (!graph) throw std::runtime_error(diagnostics.str());
+  return run(*graph).output("track").value.get<Track>().values;
+}
+
+// What speech as it comes is heard with: medians depend on no sound later than half a window after their frame.
+TEST(FeaturesOnline, OfMediansLookAheadByHalfAWindow) {
+  for (const int t : {4, 11, 20}) {
+    const double end = (t + 1) / 25.0;
+    const Eigen::MatrixXd whole = at_the_video_rate("speech-median.json", 1.3).topRows(t + 1);
+    EXPECT_EQ(at_the_video_rate("speech-median.json", end + 0.0125).topRows(t + 1), whole);
+    EXPECT_NE(at_the_video_rate("speech-median.json", end - 0.02).topRows(t + 1), whole);
+    EXPECT_NE(at_the_video_rate("speech.json", end + 0.0125).topRows(t + 1),
+              at_the_video_rate("speech.json", 1.3).topRows(t + 1))
+        << "the polyphase filter sees further";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Fragments, Features, testing::ValuesIn(fragments()), [](const auto& info) {

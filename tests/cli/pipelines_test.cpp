@@ -118,6 +118,20 @@ TEST(Pipelines, SpeakWithTheSpeechParametersOfTraining) {
   }
 }
 
+TEST(Pipelines, SpeakByTheStatesThatWereLearnt) {
+  const Registry registry = all_nodes();
+  const std::string fragments = TALKGRAPH_SOURCE_DIR "/pipelines/fragments/";
+  Diagnostics diagnostics;
+  const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", registry, diagnostics,
+                                {{"nodes.face.params.learn=" + fragments + "learn-em.json",
+                                  "nodes.face.params.imitate=" + fragments + "imitate-em.json"}});
+  ASSERT_TRUE(graph) << diagnostics.str();
+  const std::string speak = graph->resolved["nodes"]["face/save"]["params"]["speak"];
+  const Json spoken = Json::parse(speak)["nodes"];
+  EXPECT_EQ(spoken["said/segment"]["params"]["states"], "phones");
+  EXPECT_EQ(spoken["said/resegment"]["type"], "mapping.resegment");
+}
+
 TEST(Pipelines, CanBeDrawn) {
   const Registry registry = all_nodes();
   for (const auto& file : pipelines()) {
