@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -15,6 +16,7 @@ namespace {
 
 /// One utterance of which all that training needs is known.
 struct Utterance {
+  std::string key;
   const Track* audio;
   const PhoneTrack* phones;
   const Track* visual;
@@ -26,7 +28,7 @@ std::vector<Utterance> pair_up(const Collected<Track>& audio, const Collected<Ph
   std::vector<Utterance> utterances;
   for (std::size_t i = 0; i < audio.size(); ++i) {
     const auto& key = audio.key(i);
-    const Utterance u{&audio[i], phones.find(key), visual.find(key), 0};
+    const Utterance u{key, &audio[i], phones.find(key), visual.find(key), 0};
     if (!u.phones || !u.visual) continue;
     if (std::abs(u.audio->frames() - u.visual->frames()) > 2)
       throw std::runtime_error(fmt::format("{}: {} audio frames, {} visual frames; bring both to one rate", key,
@@ -84,18 +86,20 @@ Eigen::MatrixXd described(const ContextGp& model, const Track& audio, const Phon
   return f;
 }
 
-/// Kernel of all frames of one utterance (rows) with all of another.
-Eigen::MatrixXd kernel(const Eigen::RowVectorXd& window, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+/// Kernel of some frames of one utterance (rows) with all of another.
+Eigen::MatrixXd kernel(const Eigen::RowVectorXd& window, const Eigen::MatrixXd& a, const std::vector<Eigen::Index>& of,
+                       const Eigen::MatrixXd& b) {
   Eigen::MatrixXd distance = -2 * a * b.transpose();
   distance.colwise() += a.rowwise().squaredNorm();
   distance.rowwise() += b.rowwise().squaredNorm().transpose();
   const Eigen::Index n = window.size() / 2;
-  Eigen::MatrixXd exponent = Eigen::MatrixXd::Zero(a.rows(), b.rows());
+  Eigen::MatrixXd exponent = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(of.size()), b.rows());
   for (Eigen::Index l = -n; l <= n; ++l)
     for (Eigen::Index j = 0; j < b.rows(); ++j) {
       const auto column = distance.col(std::clamp<Eigen::Index>(j + l, 0, b.rows() - 1));
-      for (Eigen::Index i = 0; i < a.rows(); ++i)
-        exponent(i, j) += window[l + n] * column[std::clamp<Eigen::Index>(i + l, 0, a.rows() - 1)];
+      for (Eigen::Index i = 0; i < exponent.rows(); ++i)
+        exponent(i, j) +=
+            window[l + n] * column[std::clamp<Eigen::Index>(of[static_cast<std::size_t>(i)] + l, 0, a.rows() - 1)];
     }
   return (-exponent.cwiseMax(0)).array().exp();
 }
@@ -137,6 +141,7 @@ std::vector<Eigen::Index> chosen(const TrainContextGp& node, const std::vector<U
 
 /// The chosen frames of an utterance.
 struct Block {
+  std::size_t utterance;            ///< its number
   Eigen::MatrixXd frames;           ///< all of the utterance, described
   Eigen::Index at;                  ///< first row of the chosen in the covariance
   std::vector<Eigen::Index> local;  ///< the chosen, counted from its first frame
@@ -148,8 +153,9 @@ std::vector<Block> blocks_of(const ContextGp& model, const std::vector<Eigen::In
   std::vector<Block> blocks;
   Eigen::Index start = 0;
   std::size_t r = 0;
-  for (const auto length : model.lengths) {
-    Block block{model.frames.middleRows(start, length), static_cast<Eigen::Index>(r), {}};
+  for (std::size_t u = 0; u < model.lengths.size(); ++u) {
+    const auto length = model.lengths[u];
+    Block block{u, model.frames.middleRows(start, length), static_cast<Eigen::Index>(r), {}};
     for (; r < rows.size() && rows[r] < start + length; ++r) block.local.push_back(rows[r] - start);
     if (!block.local.empty()) blocks.push_back(std::move(block));
     start += length;
@@ -166,11 +172,84 @@ Eigen::MatrixXd covariance(const ContextGp& model, const std::vector<Eigen::Inde
     const Block& b = blocks[j];
     for (std::size_t i = j; i < blocks.size(); ++i) {
       const Block& a = blocks[i];
-      k.block(a.at, b.at, a.size(), b.size()) = kernel(model.window, a.frames, b.frames)(a.local, b.local);
+      k.block(a.at, b.at, a.size(), b.size()) = kernel(model.window, a.frames, a.local, b.frames)(Eigen::all, b.local);
     }
     context.progress(0.5 * static_cast<double>(j + 1) / static_cast<double>(blocks.size()));
   }
   return k;
+}
+
+/// Kernel of some frames of an utterance (rows) with all training frames.
+Eigen::MatrixXd kernel_with_training(const ContextGp& model, const Eigen::MatrixXd& f,
+                                     const std::vector<Eigen::Index>& of) {
+  Eigen::MatrixXd k(static_cast<Eigen::Index>(of.size()), model.frames.rows());
+  Eigen::Index start = 0;
+  for (const auto length : model.lengths) {
+    k.middleCols(start, length) = kernel(model.window, f, of, model.frames.middleRows(start, length));
+    start += length;
+  }
+  return k;
+}
+
+/// A process that lacks its weights.
+struct Prepared {
+  ContextGp model;
+  std::vector<std::string> keys;   ///< of the utterances
+  std::vector<Eigen::Index> rows;  ///< of the frames that are learnt
+  Eigen::MatrixXd targets;         ///< their visual parameters less the mean
+  Eigen::MatrixXd factor;          ///< Cholesky's, of their covariance with its noise, in the lower triangle
+};
+
+Prepared prepare(const TrainContextGp& node, const Collected<Track>& audio, const Collected<PhoneTrack>& phones,
+                 const Collected<Track>& visual, Context& context) {
+  const auto utterances = pair_up(audio, phones, visual);
+  Prepared p;
+  auto& model = p.model;
+  z_score(utterances, model);
+  model.audio_scale *= std::sqrt(0.5 * node.sound / static_cast<double>(model.audio_mean.size()));
+  model.phones = inventory(utterances);
+  model.phone_scale = std::sqrt(0.5 * node.phones);
+  model.window = window_of(node.reach, node.width);
+  model.noise = node.noise;
+
+  Eigen::Index total = 0;
+  for (const auto& u : utterances) total += u.frames;
+  model.frames.resize(total, model.audio_mean.size() + static_cast<Eigen::Index>(model.phones.size()));
+  Eigen::MatrixXd z(total, utterances[0].visual->dimension());
+  Eigen::Index at = 0;
+  for (const auto& u : utterances) {
+    model.frames.middleRows(at, u.frames) = described(model, *u.audio, *u.phones, u.frames);
+    z.middleRows(at, u.frames) = u.visual->values.topRows(u.frames);
+    model.lengths.push_back(u.frames);
+    p.keys.push_back(u.key);
+    at += u.frames;
+  }
+
+  p.rows = chosen(node, utterances);
+  p.targets = z(p.rows, Eigen::all);
+  model.mean = p.targets.colwise().mean();
+  p.targets.rowwise() -= model.mean;
+  p.factor = covariance(model, p.rows, context);
+  p.factor.diagonal().array() += model.noise;
+  if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(p.factor).info() != Eigen::Success)
+    throw std::runtime_error("the covariance of the training frames cannot be factorised: raise noise");
+  return p;
+}
+
+/// K_uu⁻¹ − (K_uu + K_uf K_fu / noise)⁻¹ of the inducing frames u and the learnt ones f, K_uu with a jitter of 1e-6.
+Eigen::MatrixXd certainty(const ContextGp& model, const std::vector<Eigen::Index>& learnt, Context& context) {
+  const auto size = static_cast<Eigen::Index>(model.inducing.size());
+  Eigen::MatrixXd uu(size, size), uf(size, static_cast<Eigen::Index>(learnt.size()));
+  std::vector<Eigen::Index> rows(model.inducing.begin(), model.inducing.end());
+  for (const Block& block : blocks_of(model, rows)) {
+    context.check_cancelled();
+    const Eigen::MatrixXd k = kernel_with_training(model, block.frames, block.local);
+    uu.middleRows(block.at, block.size()) = k(Eigen::all, rows);
+    uf.middleRows(block.at, block.size()) = k(Eigen::all, learnt);
+  }
+  uu.diagonal().array() += 1e-6;
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(size, size);
+  return uu.llt().solve(identity) - (uu + uf * uf.transpose() / model.noise).llt().solve(identity);
 }
 
 }  // namespace
@@ -192,64 +271,70 @@ Eigen::MatrixXd phone_shares(const PhoneTrack& phones, const std::vector<std::st
 
 ContextGp TrainContextGp::operator()(const Collected<Track>& audio, const Collected<PhoneTrack>& phones,
                                      const Collected<Track>& visual, Context& context) const {
-  const auto utterances = pair_up(audio, phones, visual);
-  ContextGp model;
-  z_score(utterances, model);
-  model.audio_scale *= std::sqrt(0.5 * sound / static_cast<double>(model.audio_mean.size()));
-  model.phones = inventory(utterances);
-  model.phone_scale = std::sqrt(0.5 * this->phones);
-  model.window = window_of(reach, width);
-
-  Eigen::Index total = 0;
-  for (const auto& u : utterances) total += u.frames;
-  model.frames.resize(total, model.audio_mean.size() + static_cast<Eigen::Index>(model.phones.size()));
-  Eigen::MatrixXd z(total, utterances[0].visual->dimension());
-  Eigen::Index at = 0;
-  for (const auto& u : utterances) {
-    model.frames.middleRows(at, u.frames) = described(model, *u.audio, *u.phones, u.frames);
-    z.middleRows(at, u.frames) = u.visual->values.topRows(u.frames);
-    model.lengths.push_back(u.frames);
-    at += u.frames;
-  }
-
-  const auto rows = chosen(*this, utterances);
-  Eigen::MatrixXd targets = z(rows, Eigen::all);
-  model.mean = targets.colwise().mean();
-  targets.rowwise() -= model.mean;
-  Eigen::MatrixXd k = covariance(model, rows, context);  // and then, in its place, its Cholesky factor
-  k.diagonal().array() += noise;
-  if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(k).info() != Eigen::Success)
-    throw std::runtime_error("the covariance of the training frames cannot be factorised: raise noise");
-  k.triangularView<Eigen::Lower>().solveInPlace(targets);
-  k.triangularView<Eigen::Lower>().adjoint().solveInPlace(targets);
-  model.weights.setZero(total, targets.cols());
-  model.weights(rows, Eigen::all) = targets;
-  context.log(fmt::format("{} of {} frames learnt, {} phones", rows.size(), total, model.phones.size()));
+  auto [model, keys, rows, z, factor] = prepare(*this, audio, phones, visual, context);
+  factor.triangularView<Eigen::Lower>().solveInPlace(z);
+  model.signal = z.colwise().squaredNorm() / static_cast<double>(rows.size());
+  factor.triangularView<Eigen::Lower>().adjoint().solveInPlace(z);
+  factor.resize(0, 0);
+  model.weights.setZero(model.frames.rows(), z.cols());
+  model.weights(rows, Eigen::all) = z;
+  const auto even = thinned(rows, static_cast<std::size_t>(inducing));
+  model.inducing.assign(even.begin(), even.end());
+  model.certainty = certainty(model, rows, context);
+  context.log(fmt::format("{} of {} frames learnt, {} phones", rows.size(), model.frames.rows(), model.phones.size()));
   return model;
 }
 
-Track PredictContextGp::operator()(const ContextGp& model, const Track& audio, const PhoneTrack& phones) const {
+std::vector<HeldOut> leave_one_out(const TrainContextGp& node, const Collected<Track>& audio,
+                                   const Collected<PhoneTrack>& phones, const Collected<Track>& visual,
+                                   Context& context) {
+  const auto [model, keys, rows, z, factor] = prepare(node, audio, phones, visual, context);
+  if (keys.size() < 2) throw std::runtime_error("one utterance only: there are no others to learn from");
+  const auto lower = factor.triangularView<Eigen::Lower>();
+  const Eigen::MatrixXd weights = lower.adjoint().solve(lower.solve(z));
+  std::vector<HeldOut> held;
+  for (const auto& key : keys) held.push_back({key, {}, Eigen::MatrixXd(0, z.cols())});
+  for (const Block& block : blocks_of(model, rows)) {
+    context.check_cancelled();
+    const auto from = factor.rows() - block.at;
+    const Eigen::MatrixXd columns = factor.bottomRightCorner(from, from)
+                                        .triangularView<Eigen::Lower>()
+                                        .solve(Eigen::MatrixXd::Identity(from, block.size()));
+    const Eigen::MatrixXd inverse = columns.transpose() * columns;
+    auto& out = held[block.utterance];
+    out.frames = block.local;
+    out.predicted =
+        (z.middleRows(block.at, block.size()) - inverse.llt().solve(weights.middleRows(block.at, block.size())))
+            .rowwise() +
+        model.mean;
+    context.progress(0.5 + 0.5 * static_cast<double>(block.at + block.size()) / static_cast<double>(rows.size()));
+  }
+  return held;
+}
+
+PredictContextGp::Prediction PredictContextGp::operator()(const ContextGp& model, const Track& audio,
+                                                          const PhoneTrack& phones) const {
   if (audio.dimension() != model.audio_mean.size())
     throw std::runtime_error(fmt::format("audio features of {} dimensions, the model was trained on {}",
                                          audio.dimension(), model.audio_mean.size()));
   if (!audio.values.allFinite())
     throw std::runtime_error("audio features with NaN or infinite values: look at the stage before");
-  const Eigen::MatrixXd f = described(model, audio, phones, audio.frames());
-  Track track;
-  track.rate = audio.rate;
-  track.start = audio.start;
-  track.values = model.mean.replicate(audio.frames(), 1);
-  Eigen::Index start = 0;
-  for (const auto length : model.lengths) {
-    track.values +=
-        kernel(model.window, f, model.frames.middleRows(start, length)) * model.weights.middleRows(start, length);
-    start += length;
-  }
-  return track;
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(audio.frames()));
+  std::iota(all.begin(), all.end(), 0);
+  const Eigen::MatrixXd k = kernel_with_training(model, described(model, audio, phones, audio.frames()), all);
+  const Eigen::MatrixXd near = k(Eigen::all, std::vector<Eigen::Index>(model.inducing.begin(), model.inducing.end()));
+  const Eigen::VectorXd known = (near * model.certainty).cwiseProduct(near).rowwise().sum().cwiseMin(1).cwiseMax(0);
+  Track visual;
+  visual.rate = audio.rate;
+  visual.start = audio.start;
+  Track variance = visual;
+  visual.values = (k * model.weights).rowwise() + model.mean;
+  variance.values = (1 + model.noise - known.array()).matrix() * model.signal;
+  return {std::move(visual), std::move(variance)};
 }
 
 void describe(Description<TrainContextGp>& d) {
-  d.type("mapping.context_gp").stored();
+  d.type("mapping.context_gp").version(2).stored();
   d.summary("learns a Gaussian process of visual parameters whose kernel compares sound and phones on both sides");
   d.input("audio", "speech features at the video rate of the training utterances")
       .input("phones", "their phones with times")
@@ -265,14 +350,16 @@ void describe(Description<TrainContextGp>& d) {
   d.param("margin", &TrainContextGp::margin).at_least(0).unit("frames").doc("around speech, where all is learnt");
   d.param("pauses", &TrainContextGp::pauses).at_least(1).doc("of other frames every n-th is learnt");
   d.param("max_frames", &TrainContextGp::max_frames).at_least(1).doc("most that are learnt, at even distances");
+  d.param("inducing", &TrainContextGp::inducing).at_least(1).doc("frames by which the variance is approximated");
 }
 
 void describe(Description<PredictContextGp>& d) {
-  d.type("mapping.context_gp_predict").summary("visual parameters of new speech by mapping.context_gp");
+  d.type("mapping.context_gp_predict").version(2).summary("visual parameters of new speech by mapping.context_gp");
   d.input("model", "of mapping.context_gp")
       .input("audio", "speech features at the video rate")
       .input("phones", "with their times")
-      .output("visual", "mean of the process");
+      .output("visual", &PredictContextGp::Prediction::visual, "mean of the process")
+      .output("variance", &PredictContextGp::Prediction::variance, "variance of each visual parameter about it");
 }
 
 }  // namespace talkgraph

@@ -18,6 +18,9 @@ namespace talkgraph {
 /// of more than `max_frames` as many at even distances. The time grows with the cube, the memory with the square of
 /// their number: 10 000 take 800 MB.
 ///
+/// The variance is that of the deterministic training conditional (Quiñonero-Candela and Rasmussen 2005) with
+/// `inducing` frames at even distances; that of the signal, for each visual parameter, the likeliest.
+///
 /// Utterances are paired by key; one that lacks sound, phones or face is left out. Throws std::runtime_error if none is
 /// left or nothing was measured, on values that are not finite, and where dimensions differ or lengths do by more than
 /// two frames.
@@ -30,18 +33,36 @@ struct TrainContextGp {
   int margin = 4;
   int pauses = 3;
   int max_frames = 12000;
+  int inducing = 1000;
 
   ContextGp operator()(const Collected<Track>& audio, const Collected<PhoneTrack>& phones,
                        const Collected<Track>& visual, Context& context) const;
 };
 void describe(Description<TrainContextGp>& d);
 
-/// The mean of the process at every frame. Phones that training has not met resemble none. Throws std::runtime_error on
-/// audio of another dimension or with values that are not finite.
+/// Mean and variance of the visual parameters at every frame, that of the noise included. Phones that training has not
+/// met resemble none. Throws std::runtime_error on audio of another dimension or with values that are not finite.
 struct PredictContextGp {
-  Track operator()(const ContextGp& model, const Track& audio, const PhoneTrack& phones) const;
+  struct Prediction {
+    Track visual;
+    Track variance;
+  };
+  Prediction operator()(const ContextGp& model, const Track& audio, const PhoneTrack& phones) const;
 };
 void describe(Description<PredictContextGp>& d);
+
+/// What all other utterances say of one, at those of its frames that are learnt.
+struct HeldOut {
+  std::string key;
+  std::vector<Eigen::Index> frames;
+  Eigen::MatrixXd predicted;  ///< a row a frame
+};
+
+/// Of every utterance, in closed form: ẑ_u = z_u − ((K + σ²I)⁻¹_uu)⁻¹ ((K + σ²I)⁻¹ (Z − mean))_u, which takes one
+/// factorisation and as long again. Errors of TrainContextGp; std::runtime_error if there is one utterance only.
+std::vector<HeldOut> leave_one_out(const TrainContextGp& node, const Collected<Track>& audio,
+                                   const Collected<PhoneTrack>& phones, const Collected<Track>& visual,
+                                   Context& context);
 
 /// How much of each frame each of these phones takes (T × phones): 0 to 1.
 Eigen::MatrixXd phone_shares(const PhoneTrack& phones, const std::vector<std::string>& inventory, const Track& like);

@@ -7,6 +7,7 @@
 #include "nodes/mapping/dpds_decode.h"
 #include "nodes/mapping/dpds_synthesise.h"
 #include "nodes/mapping/joint_gmm.h"
+#include "nodes/mapping/offsets.h"
 #include "nodes/mapping/phone_gaussians.h"
 #include "nodes/mapping/resegment.h"
 #include "nodes/mapping/shared_lds.h"
@@ -24,6 +25,7 @@ namespace talkgraph {
 void register_mapping(Registry& registry) {
   registry.add<AssembleSsgpdm>();
   registry.add<DecodeDpds>();
+  registry.add<EstimateOffsets>();
   registry.add<PredictContextGp>();
   registry.add<Resegment>();
   registry.add<SynthesiseCoupledHmm>();

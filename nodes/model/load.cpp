@@ -11,7 +11,8 @@ void describe(Description<LoadModel>& d) {
   d.output("face", &TalkingFace::face, "the face model")
       .output("base", &TalkingFace::base, "what synthesised faces are drawn upon")
       .output("contexts", &TalkingFace::contexts, "phonetic contexts");
-  d.output("states", &TalkingFace::states, "the switching model")
+  d.output("states", &TalkingFace::states, "the switching model, if that is what moves the face")
+      .output("process", &TalkingFace::process, "the process of soft contexts, if that is")
       .output("mean", &TalkingFace::mean, "mean visual parameters, 1 x D")
       .output("mouths", &TalkingFace::mouths, "real mouths for the face to show; may be none");
   d.param("file", &LoadModel::file).doc("model file written by model.save");

@@ -6,9 +6,13 @@
 namespace talkgraph {
 
 Artifact SaveModel::operator()(const AppearanceModel& face, const BaseClip& base, const Vlmm& contexts,
-                               const Ssgpdm& states, const Track& mean, const Mouths* mouths, const Provenance& made,
-                               Context& context) const {
-  TalkingFace all{face, base, contexts, states, mean, mouths ? *mouths : Mouths{}, speak.json};
+                               const Ssgpdm* states, const ContextGp* process, const Track& mean, const Mouths* mouths,
+                               const Provenance& made, Context& context) const {
+  if (!states && !process)
+    throw std::invalid_argument("nothing moves the face: wire states (mapping.ssgpdm) or process (mapping.context_gp)");
+  TalkingFace all{face, base, contexts, {}, {}, mean, mouths ? *mouths : Mouths{}, speak.json};
+  if (states) all.states = *states;
+  if (process) all.process = *process;
   std::string format = model_format;
   write_hdf5(context.file(name), [&](Archive& ar) {
     note(ar, made);
@@ -23,7 +27,8 @@ void describe(Description<SaveModel>& d) {
   d.input("face", "the face model")
       .input("base", "what synthesised faces are drawn upon")
       .input("contexts", "phonetic contexts")
-      .input("states", "the switching model")
+      .input("states", "the switching model, or")
+      .input("process", "the process of soft contexts")
       .input("mean", "mean visual parameters, 1 x D")
       .input("mouths", "real mouths for the face to show");
   d.output("file", "the model file");

@@ -7,6 +7,7 @@ void fields(Archive& ar, TalkingFace& f) {
   ar("base", f.base);
   ar("contexts", f.contexts);
   ar("states", f.states);
+  ar("process", f.process);
   ar("mean", f.mean);
   ar("mouths", f.mouths);
   ar("speak", f.speak);

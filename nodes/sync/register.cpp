@@ -5,6 +5,7 @@
 #include "nodes/sync/median.h"
 #include "nodes/sync/polyphase.h"
 #include "nodes/sync/quadrature.h"
+#include "nodes/sync/shift.h"
 
 namespace talkgraph {
 
@@ -13,6 +14,7 @@ void register_sync(Registry& registry) {
   registry.add<MedianSync>();
   registry.add<Polyphase>();
   registry.add<Quadrature>();
+  registry.add<Shift>();
   registry.add<VideoFrames>();
 }
 

@@ -12,6 +12,10 @@ void fields(Archive& ar, ContextGp& g) {
   ar("frames", g.frames);
   ar("weights", g.weights);
   ar("mean", g.mean);
+  ar("signal", g.signal);
+  ar("noise", g.noise);
+  ar("inducing", g.inducing);
+  ar("certainty", g.certainty);
 }
 
 }  // namespace talkgraph

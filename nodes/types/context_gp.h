@@ -15,15 +15,21 @@ struct ContextGp {
   Eigen::RowVectorXd audio_mean;   ///< of the audio dimensions
   Eigen::RowVectorXd audio_scale;  ///< what multiplies them; 0 for a constant one
   std::vector<std::string> phones;
-  double phone_scale = 0;             ///< what multiplies the phones' shares
-  Eigen::RowVectorXd window;          ///< 2n + 1 weights of the neighbours, which sum to 1
-  std::vector<std::int64_t> lengths;  ///< of the training utterances, which sum to N
-  Eigen::MatrixXd frames;             ///< f of the training utterances, N × (audio + phones)
-  Eigen::MatrixXd weights;            ///< N × D, 0 where nothing was learnt
-  Eigen::RowVectorXd mean;            ///< of the visual parameters, 1 × D
+  double phone_scale = 0;              ///< what multiplies the phones' shares
+  Eigen::RowVectorXd window;           ///< 2n + 1 weights of the neighbours, which sum to 1
+  std::vector<std::int64_t> lengths;   ///< of the training utterances, which sum to N
+  Eigen::MatrixXd frames;              ///< f of the training utterances, N × (audio + phones)
+  Eigen::MatrixXd weights;             ///< N × D, 0 where nothing was learnt
+  Eigen::RowVectorXd mean;             ///< of the visual parameters, 1 × D
+  Eigen::RowVectorXd signal;           ///< variance of what the process explains, 1 × D
+  double noise = 0;                    ///< variance of the noise, of the signal's
+  std::vector<std::int64_t> inducing;  ///< M rows of `frames`
+  /// M × M: what is known at a frame whose kernel with the inducing ones is k, a share k `certainty` kᵀ of the signal's
+  /// variance.
+  Eigen::MatrixXd certainty;
 };
 template <>
-inline constexpr PortType port_type<ContextGp>{"ContextGp", 1};
+inline constexpr PortType port_type<ContextGp>{"ContextGp", 2};
 void fields(Archive& ar, ContextGp& g);
 
 }  // namespace talkgraph

@@ -101,9 +101,88 @@ TEST(ContextGp, IsTheTextbooksProcess) {
   const Track heard = track(gaussian(10, 3, 5));
   const auto phones = said({{"ih", 2}, {"b", 4}, {"n", 4}});
   const Eigen::MatrixXd expected = (rbf(described(heard, phones), x) * weights).rowwise() + z_mean;
-  const auto predicted = PredictContextGp{}(model, heard, phones);
-  EXPECT_LT((predicted.values - expected).norm(), 1e-9 * expected.norm());
-  EXPECT_DOUBLE_EQ(predicted.start, 0.02);
+  const auto [visual, variance] = PredictContextGp{}(model, heard, phones);
+  EXPECT_LT((visual.values - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_DOUBLE_EQ(visual.start, 0.02);
+
+  // All frames are inducing ones, so that the approximate variance is the exact one.
+  const Eigen::MatrixXd covariance = rbf(x, x) + 0.4 * Eigen::MatrixXd::Identity(21, 21),
+                        k = rbf(described(heard, phones), x);
+  const Eigen::RowVectorXd signal =
+      (z.rowwise() - z_mean).cwiseProduct(covariance.fullPivLu().solve(z.rowwise() - z_mean)).colwise().mean();
+  const Eigen::VectorXd unknown = (1.4 - (k * covariance.fullPivLu().solve(k.transpose())).diagonal().array()).matrix();
+  EXPECT_LT((variance.values - unknown * signal).norm(), 1e-5 * variance.values.norm());
+  EXPECT_DOUBLE_EQ(variance.start, 0.02);
+}
+
+/// With fewer inducing frames: the deterministic training conditional, which never knows more than the process.
+TEST(ContextGp, VarianceByFewerFrames) {
+  const auto corpus = random_corpus();
+  const Track heard = track(gaussian(10, 3, 5));
+  const auto phones = said({{"ih", 2}, {"b", 4}, {"n", 4}});
+  const auto variance = [&](int inducing) {
+    return PredictContextGp{}(corpus.learn({.noise = 0.1, .inducing = inducing}), heard, phones).variance.values;
+  };
+  const Eigen::MatrixXd exact = variance(21), fewer = variance(7), one = variance(1);
+  EXPECT_EQ(variance(1000), exact);
+  EXPECT_TRUE(((fewer - exact).array() > -1e-5 * exact.array()).all());
+  EXPECT_TRUE(((one - fewer).array() > -1e-5 * exact.array()).all());
+  EXPECT_GT((one - exact).norm(), 0.01 * exact.norm());
+}
+
+/// Of recordings drawn from a process: as far off as the variance says.
+TEST(ContextGp, IsAsFarOffAsItSays) {
+  const auto sine = [](int clip) {
+    Track audio = track(Eigen::MatrixXd(100, 1)), visual = audio;
+    const Eigen::MatrixXd noise = gaussian(100, 1, 50 + clip);
+    for (int t = 0; t < 100; ++t) {
+      audio.values(t, 0) = std::sin(0.2 * t + clip) + std::sin(0.07 * t * (1 + clip % 3));
+      visual.values(t, 0) = std::sin(2 * audio.values(t, 0)) + 0.5 * noise(t, 0);
+    }
+    return std::pair{audio, visual};
+  };
+  Corpus corpus;
+  for (int clip = 0; clip < 6; ++clip)
+    corpus.add(std::to_string(clip), sine(clip).first, said({{"b", 100}}), sine(clip).second);
+  const auto model = corpus.learn({.reach = 0, .sound = 20, .noise = 0.5});
+  const auto [audio, truth] = sine(7);
+  const auto [visual, variance] = PredictContextGp{}(model, audio, said({{"b", 100}}));
+  const double off = ((truth.values - visual.values).array().square() / variance.values.array()).mean();
+  EXPECT_GT(off, 0.6);
+  EXPECT_LT(off, 1.5);
+}
+
+TEST(ContextGp, LeavesOneOutAsIfItWereNotThere) {
+  auto corpus = random_corpus();
+  corpus.add("c", track(gaussian(7, 3, 6)), said({{"ih", 7}}), track(gaussian(7, 2, 9)));
+  const TrainContextGp node{.reach = 2, .noise = 0.3};
+  Context context;
+  const auto held = leave_one_out(node, corpus.audio, corpus.phones, corpus.visual, context);
+  ASSERT_EQ(held.size(), 3u);
+  // The other two by the textbook, with the scaling, the phones and the mean of all three.
+  const auto model = corpus.learn(node);
+  const auto described = [&](std::size_t u) {
+    const Eigen::MatrixXd a = corpus.audio[u].values;
+    return stacked(node,
+                   ((a.rowwise() - model.audio_mean).array().rowwise() * model.audio_scale.array()).matrix() /
+                       std::sqrt(0.5 * node.sound / 3),
+                   phone_shares(corpus.phones[u], model.phones, corpus.audio[u]));
+  };
+  const Eigen::MatrixXd a = described(0), b = described(1), c = described(2);
+  Eigen::MatrixXd x(19, a.cols()), z(19, 2);
+  x << a, c;
+  z << corpus.visual[0].values, corpus.visual[2].values;
+  const Eigen::MatrixXd expected =
+      (rbf(b, x) * (rbf(x, x) + 0.3 * Eigen::MatrixXd::Identity(19, 19)).fullPivLu().solve(z.rowwise() - model.mean))
+          .rowwise() +
+      model.mean;
+  EXPECT_EQ(held[1].key, "b");
+  ASSERT_EQ(held[1].predicted.rows(), 9);
+  EXPECT_LT((held[1].predicted - expected).norm(), 1e-9 * expected.norm());
+
+  Corpus alone;
+  alone.add("a", corpus.audio[0], corpus.phones[0], corpus.visual[0]);
+  EXPECT_THROW(leave_one_out(node, alone.audio, alone.phones, alone.visual, context), std::runtime_error);
 }
 
 TEST(ContextGp, PhoneSharesByHand) {
@@ -125,9 +204,9 @@ TEST(ContextGp, KnowsTheNextPhone) {
   }
   const auto next = said({{"t", 4}, {"uw", 4}});
   const auto model = corpus.learn({.reach = 4, .width = 3, .noise = 0.01});
-  EXPECT_GT(PredictContextGp{}(model, silent_sound, next).values(2, 0), 0.8);
+  EXPECT_GT(PredictContextGp{}(model, silent_sound, next).visual.values(2, 0), 0.8);
   const auto deaf = corpus.learn({.reach = 4, .width = 3, .phones = 0, .noise = 0.01});
-  EXPECT_NEAR(PredictContextGp{}(deaf, silent_sound, next).values(2, 0), 0, 1e-9);
+  EXPECT_NEAR(PredictContextGp{}(deaf, silent_sound, next).visual.values(2, 0), 0, 1e-9);
 }
 
 TEST(ContextGp, PausesAreThinnedAndLostFramesLeftOut) {
@@ -147,8 +226,9 @@ TEST(ContextGp, PausesAreThinnedAndLostFramesLeftOut) {
 TEST(ContextGp, AnswersToPhonesAndSoundItHasNotMet) {
   const auto model = random_corpus().learn({});
   const auto predicted = PredictContextGp{}(model, track(Eigen::MatrixXd::Constant(5, 3, 1e6)), said({{"zh", 5}}));
-  EXPECT_LT((predicted.values.rowwise() - model.mean).norm(), 1e-9);
-  EXPECT_EQ(PredictContextGp{}(model, track(Eigen::MatrixXd(0, 3)), {}).values.rows(), 0);
+  EXPECT_LT((predicted.visual.values.rowwise() - model.mean).norm(), 1e-9);
+  EXPECT_LT((predicted.variance.values.rowwise() - (1 + model.noise) * model.signal).norm(), 1e-9);
+  EXPECT_EQ(PredictContextGp{}(model, track(Eigen::MatrixXd(0, 3)), {}).visual.values.rows(), 0);
 }
 
 TEST(ContextGp, SaysWhatIsWrong) {

@@ -39,10 +39,12 @@ class ModelFile : public testing::Test {
 
 TEST_F(ModelFile, ComesBackInItsParts) {
   const SaveModel save{"model.h5", {"{\"nodes\": {}}"}};
-  EXPECT_EQ(save(face, base, contexts, states, mean, &mouths, {}, context).path, "model.h5");
+  EXPECT_EQ(save(face, base, contexts, &states, nullptr, mean, &mouths, {}, context).path, "model.h5");
   EXPECT_FALSE(std::filesystem::exists(file() + ".part"));
   const TalkingFace back = LoadModel{{file()}}();
   EXPECT_EQ(back.contexts.alphabet, contexts.alphabet);
+  EXPECT_TRUE(back.states);
+  EXPECT_FALSE(back.process);
   EXPECT_EQ(back.mean.values, mean.values);
   ASSERT_EQ(back.mouths.pictures.size(), 2u);
   EXPECT_EQ(back.mouths.pictures[1].pixels.at<cv::Vec3b>(1, 2), cv::Vec3b(4, 5, 6));
@@ -52,8 +54,25 @@ TEST_F(ModelFile, ComesBackInItsParts) {
 }
 
 TEST_F(ModelFile, NeedsNoMouths) {
-  SaveModel{}(face, base, contexts, states, mean, nullptr, {}, context);
+  SaveModel{}(face, base, contexts, &states, nullptr, mean, nullptr, {}, context);
   EXPECT_EQ(load_model(file()).mouths.size(), 0);
+}
+
+TEST_F(ModelFile, IsMovedByEither) {
+  ContextGp process;
+  process.phones = {"aa"};
+  process.weights = Eigen::MatrixXd::Constant(2, 3, 0.5);
+  process.inducing = {1};
+  process.noise = 0.25;
+  SaveModel{}(face, base, contexts, nullptr, &process, mean, nullptr, {}, context);
+  const TalkingFace back = load_model(file());
+  EXPECT_FALSE(back.states);
+  ASSERT_TRUE(back.process);
+  EXPECT_EQ(back.process->phones, process.phones);
+  EXPECT_EQ(back.process->weights, process.weights);
+  EXPECT_EQ(back.process->inducing, process.inducing);
+  EXPECT_EQ(back.process->noise, 0.25);
+  EXPECT_THROW(SaveModel{}(face, base, contexts, nullptr, nullptr, mean, nullptr, {}, context), std::invalid_argument);
 }
 
 TEST_F(ModelFile, SaysWhatIsWrongWithAFile) {
@@ -72,7 +91,7 @@ TEST_F(ModelFile, SaysWhatIsWrongWithAFile) {
   std::string format = "talkgraph model 99";
   write_hdf5(file(), [&](Archive& ar) { ar("format", format); });
   EXPECT_THAT(complaint(), HasSubstr("\"talkgraph model 99\""));
-  SaveModel{}(face, base, contexts, states, mean, nullptr, {}, context);
+  SaveModel{}(face, base, contexts, &states, nullptr, mean, nullptr, {}, context);
   std::filesystem::resize_file(file(), std::filesystem::file_size(file()) / 2);
   EXPECT_THAT(complaint(), HasSubstr("model.h5"));
 }

@@ -9,8 +9,8 @@ namespace {
 TEST(Register, DescribesEveryNode) {
   Registry registry;
   register_sync(registry);
-  EXPECT_THAT(registry.names(),
-              testing::ElementsAre("sync.direct", "sync.frames", "sync.median", "sync.polyphase", "sync.quadrature"));
+  EXPECT_THAT(registry.names(), testing::ElementsAre("sync.direct", "sync.frames", "sync.median", "sync.polyphase",
+                                                     "sync.quadrature", "sync.shift"));
 }
 
 }  // namespace
