@@ -69,9 +69,11 @@ class Reader {
     read_member(json, "plot", out.plot);
     out.tabulate = outputs(json, "tabulate");
     out.show = outputs(json, "show");
-    if (out.tabulate.names.empty())
-      diagnostics_.error(json.place,
-                         "experiment: \"tabulate\" must name outputs of the graph that are tables or scores");
+    if (out.tabulate.names.empty() && out.show.names.empty())
+      diagnostics_.error(
+          json.place,
+          "experiment: \"tabulate\" must name outputs of the graph that are tables or scores, or \"show\" some "
+          "that are clips or pictures");
     if (const auto* vary = json.find("vary")) out.vary = vary->key_place;
     for (const char* key : {"repeats", "seeds"})
       if (const auto* m = json.find(key)) out.repeats = m->key_place;

@@ -79,7 +79,10 @@ Json experiment_schema() {
                                       {"columns", "rows"})}}}},
                            {"experiments", names("files of the experiments whose results it has")}})}}}},
       {}));
-  schema["anyOf"] = {{{"required", {"graph", "tabulate"}}}, {{"required", {"extends"}}}, {{"required", {"sections"}}}};
+  schema["anyOf"] = {{{"required", {"graph", "tabulate"}}},
+                     {{"required", {"graph", "show"}}},
+                     {{"required", {"extends"}}},
+                     {{"required", {"sections"}}}};
   schema["definitions"] = std::move(definitions);
   return schema;
 }

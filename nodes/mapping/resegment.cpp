@@ -88,7 +88,7 @@ class BoundarySearch {
     for (Eigen::Index i = 0; i < scores.rows(); ++i)
       for (Eigen::Index j = 0; j < scores.cols(); ++j) {
         const Eigen::Index begin = from[static_cast<std::size_t>(i)], end = to[static_cast<std::size_t>(j)];
-        scores(i, j) = end > begin ? score(runs_[run].phone, begin, end - begin) : impossible;
+        scores(i, j) = end > begin ? score(runs_[run].symbol, begin, end - begin) : impossible;
         if (begin == given_[run] && end == given_[run + 1]) before_ += scores(i, j);
       }
     return scores;
@@ -144,8 +144,8 @@ Resegment::Out Resegment::operator()(const Ssgpdm& model, const FrameLabels& lab
   for (std::size_t run = 0; run < runs.size(); ++run)
     for (Eigen::Index t = boundaries[run]; t < boundaries[run + 1]; ++t) {
       std::string& label = out.labels.labels[static_cast<std::size_t>(t)];
-      moved += label != runs[run].phone;
-      label = runs[run].phone;
+      moved += label != runs[run].symbol;
+      label = runs[run].symbol;
     }
   const double n = static_cast<double>(frames);
   out.scores.values = {{"log_likelihood", search.best() / n}, {"before", search.before() / n}, {"moved", moved / n}};
