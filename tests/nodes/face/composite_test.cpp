@@ -129,6 +129,14 @@ TEST(FaceShapes, OpenMouthsAreTallerThanShut) {
   EXPECT_NEAR(height(open) - height(shut), 45 * 2 * 0.16 * 0.8, 1);
 }
 
+TEST(FaceShapes, HasNoLandmarksWhereTheFaceWasLost) {
+  Track parameters = FaceParameters{}(track(still(0.1, 2)));
+  parameters.lost = {1};
+  const LandmarkTrack shapes = FaceShapes{}(model(), parameters);
+  EXPECT_TRUE(shapes.frames.at(0).allFinite());
+  EXPECT_TRUE(shapes.frames.at(1).array().isNaN().all());
+}
+
 /// Tracked clips that ChooseBase is to choose from.
 struct Clips {
   Collected<Video> videos;
