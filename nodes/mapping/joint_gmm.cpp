@@ -15,25 +15,6 @@ namespace talkgraph {
 
 namespace {
 
-/// Frames of one sequence beside their slopes, T × 2 D.
-Eigen::MatrixXd with_slopes(const TrajectoryRows& rows, const Eigen::MatrixXd& frames) {
-  const Eigen::MatrixXd all = rows * frames;
-  Eigen::MatrixXd beside(frames.rows(), 2 * frames.cols());
-  beside << all.topRows(frames.rows()), all.bottomRows(frames.rows());
-  return beside;
-}
-
-/// The same of each sequence.
-Eigen::MatrixXd with_slopes(const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lengths) {
-  Eigen::MatrixXd all(frames.rows(), 2 * frames.cols());
-  Eigen::Index start = 0;
-  for (const auto length : lengths) {
-    all.middleRows(start, length) = with_slopes(frames_and_slopes(length), frames.middleRows(start, length));
-    start += length;
-  }
-  return all;
-}
-
 /// Splits the Gaussians of x and y into those of x and of y given x.
 void condition(JointGmm& model, const GaussianMixture& joint, Eigen::Index heard) {
   const Eigen::Index seen = joint.dimension() - heard;
@@ -56,7 +37,7 @@ void condition(JointGmm& model, const GaussianMixture& joint, Eigen::Index heard
 /// The likeliest components given scaled sound, and what they make of it.
 StatePath path_of(const JointGmm& model, const Eigen::MatrixXd& audio) {
   StatePath path{frames_and_slopes(audio.rows()), {}, Eigen::VectorXd::Ones(audio.rows()), {}};
-  const Eigen::MatrixXd x = with_slopes(path.rows, audio), logs = log_joint(model.sound, x);
+  const Eigen::MatrixXd x = blocks_beside(path.rows, 2, audio), logs = log_joint(model.sound, x);
   path.shifts.resize(x.rows(), model.means.cols());
   for (Eigen::Index t = 0; t < x.rows(); ++t) {
     Eigen::Index likeliest = 0;
@@ -82,7 +63,8 @@ JointGmm TrainJointGmm::operator()(const Collected<Track>& audio, const Collecte
   const Eigen::MatrixXd heard = scaled(model.audio, data.frames.leftCols(both.audio)),
                         seen = scaled(model.visual, data.frames.rightCols(model.visual.mean.size()));
   Eigen::MatrixXd joint(heard.rows(), 2 * scaling.mean.size());
-  joint << with_slopes(heard, data.lengths), with_slopes(seen, data.lengths);
+  joint << blocks_beside(frames_and_slopes, 2, heard, data.lengths),
+      blocks_beside(frames_and_slopes, 2, seen, data.lengths);
   TrainGmm mixture;
   mixture.components = components;
   mixture.floor = floor;

@@ -16,6 +16,8 @@
 #include "nodes/mapping/slds_synthesise.h"
 #include "nodes/mapping/ssgpdm.h"
 #include "nodes/mapping/ssgpdm_synthesise.h"
+#include "nodes/mapping/trajectory_hmm.h"
+#include "nodes/mapping/trajectory_hmm_synthesise.h"
 #include "nodes/mapping/voice_puppetry.h"
 #include "nodes/mapping/voice_puppetry_synthesise.h"
 #include "nodes/mapping/windowed_cca.h"
@@ -35,6 +37,7 @@ void register_mapping(Registry& registry) {
   registry.add<SynthesiseSharedLds>();
   registry.add<SynthesiseSlds>();
   registry.add<SynthesiseSsgpdm>();
+  registry.add<SynthesiseTrajectoryHmm>();
   registry.add<SynthesiseVoicePuppetry>();
   registry.add<SynthesiseWindowedCca>();
   registry.add<TrainContextGp>();
@@ -44,6 +47,7 @@ void register_mapping(Registry& registry) {
   registry.add<TrainPhoneGaussians>();
   registry.add<TrainSharedLds>();
   registry.add<TrainSlds>();
+  registry.add<TrainTrajectoryHmm>();
   registry.add<TrainVoicePuppetry>();
   registry.add<TrainWindowedCca>();
 }

@@ -31,6 +31,13 @@ Entries frames_themselves(Eigen::Index frames) {
   return entries;
 }
 
+void add_slopes(Entries& entries, Eigen::Index frames) {
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    entries.emplace_back(frames + t, std::min(t + 1, frames - 1), 0.5);
+    entries.emplace_back(frames + t, std::max<Eigen::Index>(t - 1, 0), -0.5);
+  }
+}
+
 /// Coefficients of the difference of an order: 1; −1, 1; 1, −2, 1; ...
 Eigen::VectorXd difference(Eigen::Index order) {
   Eigen::VectorXd c = Eigen::VectorXd::Zero(order + 1);
@@ -59,11 +66,19 @@ Eigen::MatrixXd normal_band(const TrajectoryRows& rows, const Eigen::VectorXd& p
 
 TrajectoryRows frames_and_slopes(Eigen::Index frames) {
   Entries entries = frames_themselves(frames);
-  for (Eigen::Index t = 0; t < frames; ++t) {
-    entries.emplace_back(frames + t, std::min(t + 1, frames - 1), 0.5);
-    entries.emplace_back(frames + t, std::max<Eigen::Index>(t - 1, 0), -0.5);
-  }
+  add_slopes(entries, frames);
   return rows_of(2 * frames, frames, entries);
+}
+
+TrajectoryRows frames_slopes_and_curvatures(Eigen::Index frames) {
+  Entries entries = frames_themselves(frames);
+  add_slopes(entries, frames);
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    entries.emplace_back(2 * frames + t, std::min(t + 1, frames - 1), 1);
+    entries.emplace_back(2 * frames + t, t, -2);
+    entries.emplace_back(2 * frames + t, std::max<Eigen::Index>(t - 1, 0), 1);
+  }
+  return rows_of(3 * frames, frames, entries);
 }
 
 TrajectoryRows frames_and_differences(Eigen::Index frames, Eigen::Index order) {
@@ -73,6 +88,26 @@ TrajectoryRows frames_and_differences(Eigen::Index frames, Eigen::Index order) {
   for (Eigen::Index t = 0; t < differences; ++t)
     for (Eigen::Index i = 0; i <= order; ++i) entries.emplace_back(frames + t, t + i, coefficients(i));
   return rows_of(frames + differences, frames, entries);
+}
+
+Eigen::MatrixXd blocks_beside(const TrajectoryRows& rows, Eigen::Index blocks, const Eigen::MatrixXd& frames) {
+  const Eigen::Index length = frames.rows();
+  const Eigen::MatrixXd below = rows * frames;
+  Eigen::MatrixXd beside(length, blocks * frames.cols());
+  for (Eigen::Index b = 0; b < blocks; ++b)
+    beside.middleCols(b * frames.cols(), frames.cols()) = below.middleRows(b * length, length);
+  return beside;
+}
+
+Eigen::MatrixXd blocks_beside(TrajectoryRows (*rows_of)(Eigen::Index), Eigen::Index blocks,
+                              const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lengths) {
+  Eigen::MatrixXd all(frames.rows(), blocks * frames.cols());
+  Eigen::Index start = 0;
+  for (const auto length : lengths) {
+    all.middleRows(start, length) = blocks_beside(rows_of(length), blocks, frames.middleRows(start, length));
+    start += length;
+  }
+  return all;
 }
 
 TrajectoryFit::TrajectoryFit(const TrajectoryRows& rows, Eigen::VectorXd precisions, Eigen::VectorXd targets)

@@ -31,6 +31,10 @@ std::vector<StatePath> sloping_paths() {
   return paths;
 }
 
+std::vector<StatePath> curved_paths() {
+  return {some_path(frames_slopes_and_curvatures(12), 12, 1), some_path(frames_slopes_and_curvatures(2), 2, 2)};
+}
+
 TEST(TrajectoryError, GradientIsThatOfCentralDifferences) {
   const Eigen::MatrixXd frames = gaussian(14, 2, 5);
   const auto check = [&](const StateGaussians& states, const std::vector<StatePath>& paths) {
@@ -41,6 +45,7 @@ TEST(TrajectoryError, GradientIsThatOfCentralDifferences) {
   };
   check(some_states(1, 2), smooth_paths());
   check(some_states(2, 0), sloping_paths());
+  check(some_states(3, 0), curved_paths());
 }
 
 TEST(TrajectoryError, IsHalfTheMeanSquareOfWhatTrajectoriesMiss) {

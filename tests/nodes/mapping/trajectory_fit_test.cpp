@@ -13,7 +13,8 @@ namespace {
 using testing::gaussian;
 
 std::vector<TrajectoryRows> kinds_of_rows(Eigen::Index frames) {
-  return {frames_and_slopes(frames), frames_and_differences(frames, 1), frames_and_differences(frames, 4)};
+  return {frames_and_slopes(frames), frames_and_differences(frames, 1), frames_and_differences(frames, 4),
+          frames_slopes_and_curvatures(frames)};
 }
 
 TEST(TrajectoryFit, SolvesTheNormalEquations) {
@@ -46,9 +47,22 @@ TEST(TrajectoryFit, RowsAreSlopesAndDifferences) {
   const Eigen::VectorXd y = Eigen::VectorXd::LinSpaced(7, 0, 6).array().square();
   const Eigen::VectorXd slopes = (frames_and_slopes(7) * y).tail(7), expected{{0.5, 2, 4, 6, 8, 10, 5.5}};
   EXPECT_EQ(slopes, expected);
+  const Eigen::VectorXd curved = frames_slopes_and_curvatures(7) * y, curvatures{{1, 2, 2, 2, 2, 2, -11}};
+  EXPECT_EQ(curved.segment(7, 7), expected);
+  EXPECT_EQ(curved.tail(7), curvatures);
   EXPECT_EQ((frames_and_differences(7, 2) * y).tail(5), Eigen::VectorXd::Constant(5, 2));
   EXPECT_TRUE((frames_and_differences(7, 3) * y).tail(4).isZero());
   EXPECT_EQ(frames_and_differences(3, 3).rows(), 3);
+}
+
+TEST(TrajectoryFit, PutsBlocksOfRowsBesideEachOther) {
+  const Eigen::MatrixXd y = gaussian(5, 2, 1);
+  Eigen::MatrixXd expected(5, 4);
+  expected.leftCols(2) = y;
+  expected.topRightCorner(3, 2) = (frames_and_slopes(3) * y.topRows(3)).bottomRows(3);
+  expected.bottomRightCorner(2, 2).rowwise() = 0.5 * (y.row(4) - y.row(3));
+  EXPECT_EQ(blocks_beside(frames_and_slopes, 2, y, {3, 2}), expected);
+  EXPECT_EQ(blocks_beside(frames_and_slopes(0), 2, Eigen::MatrixXd(0, 3)).cols(), 6);
 }
 
 TEST(TrajectoryFit, RefusesWhatDoesNotDetermineTheTrajectory) {
