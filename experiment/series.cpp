@@ -25,8 +25,8 @@ class Reader {
   Reader(const Registry& registry, const std::vector<std::string>& sets, Diagnostics& diagnostics)
       : registry_(registry), sets_(sets), diagnostics_(diagnostics) {}
 
-  Series read(const LocatedJson& json) {
-    Series series;
+  ExperimentSeries read(const LocatedJson& json) {
+    ExperimentSeries series;
     if (!detail::expect_object(json, "a series", diagnostics_)) return series;
     detail::check_keys(json, {"$schema", "description", "sections"}, "series", diagnostics_);
     read_text(json, "description", series.description);
@@ -45,8 +45,8 @@ class Reader {
       detail::read_parameter(m->value, text, {}, fmt::format("series: \"{}\"", key), diagnostics_);
   }
 
-  Series::Section section_of(const LocatedJson& json) {
-    Series::Section section;
+  ExperimentSeries::Section section_of(const LocatedJson& json) {
+    ExperimentSeries::Section section;
     if (!detail::expect_object(json, "a section", diagnostics_)) return section;
     detail::check_keys(json, {"title", "text", "table", "experiments"}, "section", diagnostics_);
     read_text(json, "title", section.title);
@@ -63,8 +63,8 @@ class Reader {
     return section;
   }
 
-  Series::Words words_of(const LocatedJson& json) {
-    Series::Words words;
+  ExperimentSeries::Words words_of(const LocatedJson& json) {
+    ExperimentSeries::Words words;
     if (!detail::expect_object(json, "section: \"table\"", diagnostics_)) return words;
     detail::check_keys(json, {"columns", "rows"}, "section: \"table\"", diagnostics_);
     if (const auto* m = json.find("columns"))
@@ -79,7 +79,7 @@ class Reader {
     return words;
   }
 
-  std::optional<Series::Part> part_of(const LocatedJson& json) {
+  std::optional<ExperimentSeries::Part> part_of(const LocatedJson& json) {
     FilePath file;
     detail::read_parameter(json, file, {}, "section: \"experiments\"", diagnostics_);
     if (file.path.empty()) return {};
@@ -94,7 +94,7 @@ class Reader {
                  [&](const std::string& set) { return takes(*experiment, set); });
     auto graphs = load_trials(*experiment, registry_, own, diagnostics_);
     if (!graphs) return {};
-    return Series::Part{*std::move(experiment), *std::move(graphs), {}};
+    return ExperimentSeries::Part{*std::move(experiment), *std::move(graphs), {}};
   }
 
   bool takes(const Experiment& experiment, const std::string& set) {
@@ -105,7 +105,7 @@ class Reader {
   }
 
   /// Of a change that no graph takes, as the first one says it.
-  void complain_of(const std::string& set, const Series& series) {
+  void complain_of(const std::string& set, const ExperimentSeries& series) {
     for (const auto& section : series.sections)
       for (const auto& part : section.parts) {
         load_graph(part.experiment.graph, registry_, diagnostics_, {{set}, part.experiment.trials[0].changes});
@@ -130,7 +130,7 @@ std::string paragraphs(const std::string& text) {
   return out;
 }
 
-std::string table_of(const Series::Words& words) {
+std::string table_of(const ExperimentSeries::Words& words) {
   if (words.rows.empty()) return "";
   const auto cells = [](const char* open, const std::vector<std::string>& texts, const char* close) {
     std::string out;
@@ -145,7 +145,7 @@ std::string table_of(const Series::Words& words) {
   return out + "</tbody>\n</table></div>\n";
 }
 
-std::string state_of(const Series::Part& part) {
+std::string state_of(const ExperimentSeries::Part& part) {
   const auto ended = std::count_if(part.results.begin(), part.results.end(),
                                    [](const TrialResult& r) { return r.status == TrialResult::Status::finished; });
   const auto all = part.experiment.trials.size();
@@ -160,19 +160,19 @@ bool is_series(const std::filesystem::path& file) {
   return json.is_object() && json.contains("sections");
 }
 
-std::optional<Series> load_series(const std::filesystem::path& file, const Registry& registry,
-                                  const std::vector<std::string>& sets, Diagnostics& diagnostics) {
+std::optional<ExperimentSeries> load_series(const std::filesystem::path& file, const Registry& registry,
+                                            const std::vector<std::string>& sets, Diagnostics& diagnostics) {
   const auto text = std::make_shared<SourceText>(SourceText{file.string(), text_of(file)});
   std::vector<std::string> open;
   const auto json = detail::parse_extended(text, open, diagnostics);
   if (!json) return {};
-  Series series = Reader(registry, sets, diagnostics).read(*json);
+  ExperimentSeries series = Reader(registry, sets, diagnostics).read(*json);
   series.name = file.stem().string();
   if (!diagnostics.ok()) return {};
   return series;
 }
 
-std::string series_page(const Series& series) {
+std::string series_page(const ExperimentSeries& series) {
   std::string page = html_open(series.name, series.description);
   for (const auto& section : series.sections) {
     page += fmt::format("<h2>{}</h2>\n{}", escape_markup(section.title), paragraphs(section.text));

@@ -10,7 +10,7 @@
 namespace talkgraph {
 
 /// Experiments that tell a story together: a page has sections, and each of them the results of some experiments.
-struct Series {
+struct ExperimentSeries {
   struct Part {
     Experiment experiment;
     std::vector<Graph> graphs;  ///< one a trial
@@ -36,10 +36,10 @@ bool is_series(const std::filesystem::path& file);
 
 /// Reads a series and all its experiments (docs/experiments.md). Each of `sets` is for those whose graphs have what it
 /// sets. All that is wrong goes to `diagnostics`; nothing is returned then.
-std::optional<Series> load_series(const std::filesystem::path& file, const Registry& registry,
-                                  const std::vector<std::string>& sets, Diagnostics& diagnostics);
+std::optional<ExperimentSeries> load_series(const std::filesystem::path& file, const Registry& registry,
+                                            const std::vector<std::string>& sets, Diagnostics& diagnostics);
 
 /// The page of all results, of which those of an experiment are in the folder of its name beside it.
-std::string series_page(const Series& series);
+std::string series_page(const ExperimentSeries& series);
 
 }  // namespace talkgraph

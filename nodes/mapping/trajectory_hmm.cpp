@@ -7,8 +7,8 @@
 #include "nodes/latent/em.h"
 #include "nodes/latent/hmm.h"
 #include "nodes/latent/normal.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 

@@ -1,9 +1,9 @@
 #include "nodes/mapping/trajectory_hmm_synthesise.h"
 
 #include "nodes/latent/sequences.h"
-#include "nodes/mapping/paired.h"
 #include "nodes/mapping/scaling.h"
 #include "nodes/mapping/trajectory_hmm.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 
