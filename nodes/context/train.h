@@ -25,12 +25,9 @@ inline constexpr EnumNames<SymbolKind, 2> enum_names<SymbolKind>{
 ///   ΔH(σw, w) = p(σw) Σ_σ' p(σ'|σw) ln(p(σ'|σw) / p(σ'|w)) ≥ keep,
 /// and on a phone σ it leads to the longest kept suffix of wσ.
 ///
-/// The defaults have the least perplexity on held-out recordings: GRID speaker
-/// s1, forced alignment, 198 clips to train on and 30 validation clips. There
-/// it falls with the order (2.23, 2.01, 1.89, 1.86 for 1 to 4) and no further
-/// beyond 5; 1.86 at keep = 4e-4, 1.97 at 1e-4, 2.15 at 1e-5, 1.93 at 1e-3;
-/// pruning what was seen once costs 0.14. At keep = 1e-4 segments are about
-/// twice as long.
+/// The defaults are chosen by perplexity on held-out recordings, GRID speaker s1 (docs/experiments.md): it is 4.52,
+/// 3.79, 3.51 at order 1 to 3 and 3.53 from 5 on; 4.36, 3.92, 3.53, 3.49, 3.78 at keep = 1e-5, 1e-4, 4e-4, 1e-3, 3e-3;
+/// pruning what was seen twice or less costs a third of it.
 ///
 /// Pauses at the ends of a stream (phones.mark_pauses) are labels of their own,
 /// no part of a memory.

@@ -90,17 +90,17 @@ Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
 Point operator*(double k, Point a) { return {k * a.x, k * a.y}; }
 Point unit(Point a) { return 1 / std::max(std::hypot(a.x, a.y), 1e-9) * a; }
 
-/// A curve with a head, and the text beside its middle.
+/// A curve with a head, and the text on its first third, where fewest of them meet.
 std::string draw_arrow(Point from, Point by, Point by_2, Point to, const std::string& text) {
   const Point back = 7 * unit(by_2 - to), side{-0.5 * back.y, 0.5 * back.x};
-  const Point middle = 0.125 * (from + 3 * by + 3 * by_2 + to);
+  const Point third = 1. / 27 * (8 * from + 12 * by + 6 * by_2 + to);
   const Point left = to + back + side, right = to + back - side;
   return svg_line(fmt::format("M{:.1f} {:.1f}C{:.1f} {:.1f} {:.1f} {:.1f} {:.1f} {:.1f}", from.x, from.y, by.x, by.y,
                               by_2.x, by_2.y, to.x, to.y),
                   "#888") +
          fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}Z\" fill=\"#888\"/>\n", to.x, to.y, left.x,
                      left.y, right.x, right.y) +
-         svg_text(middle.x, middle.y + 4, "middle", text,
+         svg_text(third.x, third.y + 4, "middle", text,
                   " font-size=\"10\" stroke=\"#fff\" stroke-width=\"4\" paint-order=\"stroke\"");
 }
 
@@ -116,13 +116,7 @@ class Circle {
   std::string draw(double least) const {
     std::string out;
     for (const auto from : states_)
-      for (std::size_t s = 0; s < vlmm_.alphabet.size(); ++s) {
-        const auto& state = vlmm_.states[from];
-        if (state.next[s] < 0 || state.probability[s] < least) continue;
-        const auto to = places_.find(static_cast<std::size_t>(state.next[s]));
-        if (to == places_.end()) continue;
-        out += arrow(from, to->first, fmt::format("{} {:.2f}", vlmm_.alphabet[s], state.probability[s]));
-      }
+      for (const auto& [to, text] : transitions(from, least)) out += arrow(from, to, text);
     for (const auto& [state, at] : places_) {
       const double w = width(state);
       out += fmt::format(
@@ -136,6 +130,18 @@ class Circle {
 
  private:
   double width(std::size_t state) const { return 18 + kCharacter * static_cast<double>(name_of(vlmm_, state).size()); }
+  /// What leads from a memory to each other drawn one.
+  std::map<std::size_t, std::string> transitions(std::size_t from, double least) const {
+    const auto& state = vlmm_.states[from];
+    std::map<std::size_t, std::string> texts;
+    for (std::size_t s = 0; s < vlmm_.alphabet.size(); ++s) {
+      const auto to = static_cast<std::size_t>(std::max<std::int64_t>(state.next[s], 0));
+      if (state.next[s] < 0 || state.probability[s] < least || !places_.contains(to)) continue;
+      auto& text = texts[to];
+      text += fmt::format("{}{} {:.2f}", text.empty() ? "" : ", ", vlmm_.alphabet[s], state.probability[s]);
+    }
+    return texts;
+  }
   /// Where a line from a memory's middle towards a point leaves its box.
   Point edge(std::size_t state, Point towards) const {
     const Point at = places_.at(state), d = towards - at;

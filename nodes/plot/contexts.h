@@ -8,8 +8,9 @@ namespace talkgraph {
 
 /// A Markov model of contexts as a picture: its suffix tree, a line a memory below its suffix, with the training
 /// frames read in it and what is likeliest to follow; and, of at most 16 memories,
-/// the automaton beside it (thesis Figures 5.3, 5.4), memories on a circle and an arrow a transition, which has the
-/// symbol and its probability. Of more than `most` memories those are drawn whose contexts hold most frames.
+/// the automaton beside it (thesis Figures 5.3, 5.4), memories on a circle and an arrow with the
+/// symbols and their probabilities from one to another. Of more than `most` memories those are drawn whose contexts
+/// hold most frames.
 struct PlotContexts {
   int most = 60;        ///< memories drawn
   double least = 0.05;  ///< probability of a transition that gets an arrow
