@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <thread>
 
 #include "cli/run.h"
@@ -108,7 +107,6 @@ std::size_t trained_states(const Cache& cache) {
 
 struct Learnt {
   int calls = 0, loaded = 0;
-  Key states;
 };
 Learnt learn(const test::TemporaryFolder& folder, const std::string& graph, const std::string& cache,
              const std::string& name) {
@@ -123,7 +121,7 @@ Learnt learn(const test::TemporaryFolder& folder, const std::string& graph, cons
   Learnt learnt;
   const Json report = Json::parse(folder.read(name + "/run.json"));
   for (const auto& node : report["nodes"])
-    if (node["type"] == "latent.sgpdm") learnt = {node["calls"], node["loaded"], {}};
+    if (node["type"] == "latent.sgpdm") learnt = {node["calls"], node["loaded"]};
   return learnt;
 }
 
