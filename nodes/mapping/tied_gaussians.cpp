@@ -109,7 +109,7 @@ class Grower {
     grow(yes + 1, contexts, answered[0]);
   }
 
-  /// -1 if none gains enough.
+  /// The first of equals, but for rounding; -1 if none gains enough.
   Eigen::Index best_question(const FrameSums& contexts, const Members& members) const {
     const FrameSums here = merged(Eigen::RowVectorXd::Ones(std::ssize(members)), contexts, members),
                     yes = merged(answers_(Eigen::all, members), contexts, members), no = difference(here, yes);
@@ -117,7 +117,8 @@ class Grower {
     double most = log_likelihoods(here, limits_.floors)(0) + least_gain_;
     Eigen::Index best = -1;
     for (Eigen::Index q = 0; q < split.size(); ++q) {
-      if (std::min(yes.counts(q), no.counts(q)) < limits_.occupancy || split(q) <= most) continue;
+      const bool gains = split(q) > most + 1e-9 * std::abs(most);
+      if (!gains || std::min(yes.counts(q), no.counts(q)) < limits_.occupancy) continue;
       most = split(q);
       best = q;
     }
