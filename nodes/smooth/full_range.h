@@ -15,7 +15,7 @@ namespace talkgraph {
 ///
 /// Throws std::runtime_error on values that are not finite, variances below 0, or if sizes do not agree.
 struct FullRange {
-  double strength = 0.75;
+  double strength = 0.6;
   int fade = 4;
 
   Track operator()(const Track& track, const Track& variance, const Mask& speech) const;
