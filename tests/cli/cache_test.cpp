@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
 
 #include "cli/run.h"
 #include "nodes/all_nodes.h"
@@ -103,6 +104,7 @@ TEST(CacheCommand, DamagedEntriesAreNamedAndRemoved) {
 TEST(Nodes, WhatTheyGiveCanBeWrittenAndLoaded) {
   const test::TemporaryFolder folder;
   const Registry registry = all_nodes();
+  const std::set<std::string> models = {"model", "face", "vlmm", "contexts", "reader"};
   for (const auto& name : registry.names()) {
     const NodeType& type = *registry.find(name);
     for (const auto& port : type.outputs) {
@@ -113,7 +115,7 @@ TEST(Nodes, WhatTheyGiveCanBeWrittenAndLoaded) {
       try {
         port.info->visit(*hdf5_reader(file), port.info->make().get());
       } catch (const std::runtime_error& e) {
-        EXPECT_EQ(port.name, "model") << name;
+        EXPECT_TRUE(models.contains(port.name)) << name << " " << port.name;
         EXPECT_THAT(e.what(), HasSubstr("train it anew")) << name << " " << port.name;
       }
     }

@@ -49,7 +49,7 @@ TEST_F(SeriesTest, ChangesGoToTheGraphsThatHaveWhatTheySet) {
   const auto both = load_series(series(sections), registry_, {"scale=5"}, diagnostics);
   ASSERT_TRUE(both) << diagnostics.str();
   EXPECT_EQ(both->sections[0].parts[0].graphs[0].resolved["nodes"]["score"]["params"]["scale"], 5);
-  EXPECT_FALSE(both->sections[0].parts[1].graphs[0].resolved["nodes"]["score"].contains("params"));
+  EXPECT_EQ(both->sections[0].parts[1].graphs[0].resolved["nodes"]["score"]["params"]["scale"], 1);
   EXPECT_THAT(complaint(sections, {"scal=5"}), HasSubstr("scal"));
 }
 

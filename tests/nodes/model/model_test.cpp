@@ -12,6 +12,22 @@ namespace {
 
 using testing::HasSubstr;
 
+/// One triangle of one pixel that does not move.
+AppearanceModel small_face() {
+  AppearanceModel m;
+  m.mean_shape = Shape{{0, 0}, {2, 0}, {0, 2}};
+  m.triangles = Triangles{{0, 1, 2}};
+  m.shape_modes.resize(6, 0);
+  m.shape_per_mode.resize(6, 0);
+  const auto textures = [](Eigen::Index columns) {
+    return std::make_shared<const Eigen::MatrixXf>(Eigen::MatrixXf::Zero(3, columns));
+  };
+  m.texture_modes = textures(0);
+  FitLevel level{{3, 3, 1, {0, 0}, m.mean_shape, {0}, {0}, {0}}, textures(1), textures(0), textures(4)};
+  m.levels.push_back(level);
+  return m;
+}
+
 class ModelFile : public testing::Test {
  protected:
   void SetUp() override {
@@ -26,7 +42,7 @@ class ModelFile : public testing::Test {
 
   const test::TemporaryFolder folder;
   Context context;
-  AppearanceModel face;
+  AppearanceModel face = small_face();
   BaseClip base;
   Vlmm contexts;
   Ssgpdm states;
