@@ -25,7 +25,7 @@ namespace talkgraph {
 /// Streams are paired by key. Throws std::runtime_error if none pair, if lengths differ by more than two frames, on
 /// different dimensions, on values that are not finite, and if no visual frame is measured.
 struct TrainTrajectoryHmm {
-  int states = 3;
+  int states = 5;
   double occupancy = 20;
   double penalty = 1;
   double floor = 1e-2;
