@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 
@@ -92,17 +91,8 @@ int draw(const std::string& file, const Registry& registry, const std::vector<st
          const std::string& format, const std::string& output) {
   const auto graph = load(file, registry, sets);
   if (!graph) return usage;
-  const std::string text = format == "mermaid" ? draw_mermaid(*graph) : draw_dot(*graph);
-  if (format != "svg") {
-    return deliver(text, output), success;
-  }
-  std::string command = "dot -Tsvg";
-  if (!output.empty()) command += " -o '" + CLI::detail::find_and_replace(output, "'", "'\\''") + "'";
-  std::signal(SIGPIPE, SIG_IGN);  // a missing dot shall be told, not end the program
-  std::FILE* dot = popen(command.c_str(), "w");
-  if (!dot) return fmt::print(stderr, "Graphviz (dot) cannot be started\n"), failed;
-  std::fputs(text.c_str(), dot);
-  return pclose(dot) == 0 ? success : (fmt::print(stderr, "Graphviz (dot) failed; --format dot needs none\n"), failed);
+  deliver(format == "mermaid" ? draw_mermaid(*graph) : format == "dot" ? draw_dot(*graph) : draw_svg(*graph), output);
+  return success;
 }
 
 /// "500MB"; a negative one would be taken for a huge one.
