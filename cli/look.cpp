@@ -119,25 +119,24 @@ std::string draw_dot(const Graph& graph) {
 }
 
 std::string draw_svg(const Graph& graph) {
-  const std::string ranks = "  newrank=true;\n";
-  std::string without = draw_dot(graph);
-  without.erase(without.find(ranks), ranks.size());
-  // Graphviz 2.43 loses its way in some large graphs with nested boxes, in others without this ranking.
-  for (const auto& text : {draw_dot(graph), without}) {
-    char name[] = "/tmp/talkgraph-XXXXXX";
-    const int file = mkstemp(name);
-    if (file < 0) throw std::runtime_error("no temporary file can be made in /tmp");
-    close(file);
-    std::ofstream(name) << text;
-    std::FILE* dot = popen(fmt::format("dot -Tsvg {} 2>/dev/null", name).c_str(), "r");
-    std::string svg;
+  char name[] = "/tmp/talkgraph-XXXXXX";
+  const int file = mkstemp(name);
+  if (file < 0) throw std::runtime_error("no temporary file can be made in /tmp");
+  close(file);
+  std::ofstream(name) << draw_dot(graph);
+  std::string svg;
+  // Graphviz 2.43 loses its way in some large graphs with nested boxes, in others than without the one or other option.
+  for (const char* command : {"dot -Tsvg {}", "dot -Tsvg -Gsearchsize=3 {}", "sed /newrank/d {} | dot -Tsvg"}) {
+    std::FILE* dot = popen((fmt::format(fmt::runtime(command), name) + " 2>/dev/null").c_str(), "r");
+    svg.clear();
     char part[4096];
     while (const auto n = std::fread(part, 1, sizeof part, dot)) svg.append(part, n);
-    const bool drawn = pclose(dot) == 0;
-    std::filesystem::remove(name);
-    if (drawn) return svg;
+    if (pclose(dot) == 0) break;
+    svg.clear();
   }
-  throw std::runtime_error("Graphviz (dot) is not there, or failed; --format dot needs none");
+  std::filesystem::remove(name);
+  if (svg.empty()) throw std::runtime_error("Graphviz (dot) is not there, or failed; --format dot needs none");
+  return svg;
 }
 
 std::string draw_mermaid(const Graph& graph) {
