@@ -1,6 +1,7 @@
 #include "nodes/mapping/tied_gaussians.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <set>

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "nodes/latent/em.h"
 #include "nodes/latent/hmm.h"
