@@ -10,6 +10,7 @@
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/video_file.h"
 #include "nodes/voice/voice.h"
+#include "tests/source_folder.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
@@ -31,7 +32,7 @@ TEST(EndToEnd, LearnsAFaceAndSpeaksWithIt) {
   run.sets = {"sentences=12", "held_out=2"};
   run.folder = folder;
   run.progress = ProgressStyle::quiet;
-  ASSERT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, registry), success);
+  ASSERT_EQ(run_file(test::source("/pipelines/demo.json"), run, registry), success);
   const Json metrics = Json::parse(temporary.read("run/metrics.json"));
   const auto& rows = metrics["scores"]["rows"];
   ASSERT_TRUE(rows.contains("SSGPDM"));
@@ -98,7 +99,7 @@ TEST(EndToEnd, LearnsReadyMadeVisualTracks) {
   run.sets = {"fps=50", "manifest=" + temporary.write("manifest.json", Json{{"clips", clips}}.dump())};
   run.folder = temporary.path() / "run";
   run.progress = ProgressStyle::quiet;
-  ASSERT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/own-tracks.json", run, all_nodes()), success);
+  ASSERT_EQ(run_file(test::source("/pipelines/own-tracks.json"), run, all_nodes()), success);
   const Json rows = Json::parse(temporary.read("run/metrics.json"))["scores"]["rows"];
   EXPECT_EQ(rows["SSGPDM"]["sequences"], 1);
   EXPECT_LT(rows["SSGPDM"]["amse_share"], 0.7);
@@ -112,7 +113,7 @@ TEST(EndToEnd, RefusesAFolderThatCannotBeWritten) {
   RunCommand run;
   run.folder = temporary.write("in_the_way", "x") + "/run";
   run.progress = ProgressStyle::quiet;
-  EXPECT_THROW(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, all_nodes()), std::runtime_error);
+  EXPECT_THROW(run_file(test::source("/pipelines/demo.json"), run, all_nodes()), std::runtime_error);
 }
 
 TEST(EndToEnd, SaysWhatIsWrongWithAGraph) {
@@ -120,7 +121,7 @@ TEST(EndToEnd, SaysWhatIsWrongWithAGraph) {
   run.progress = ProgressStyle::quiet;
   EXPECT_EQ(run_file("nowhere.json", run, all_nodes()), usage);
   run.sets = {"sentences=0"};
-  EXPECT_EQ(run_file(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", run, all_nodes()), usage);
+  EXPECT_EQ(run_file(test::source("/pipelines/demo.json"), run, all_nodes()), usage);
 }
 
 }  // namespace

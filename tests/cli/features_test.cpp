@@ -6,6 +6,7 @@
 #include "runtime/executor.h"
 #include "tests/nodes/speech/chains.h"
 #include "tests/nodes/speech/written_out.h"
+#include "tests/source_folder.h"
 
 namespace talkgraph {
 
@@ -33,7 +34,7 @@ static void describe(Description<CutVoice>& d) {
 namespace cli {
 namespace {
 
-const std::filesystem::path folder = TALKGRAPH_SOURCE_DIR "/pipelines/fragments/features";
+const std::filesystem::path folder = test::source("/pipelines/fragments/features");
 
 std::vector<std::string> fragments() {
   std::vector<std::string> names;

@@ -10,6 +10,7 @@
 #include "experiment/series.h"
 #include "graph/differences.h"
 #include "nodes/all_nodes.h"
+#include "tests/source_folder.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
@@ -17,7 +18,7 @@ namespace {
 
 std::vector<std::string> pipelines() {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(TALKGRAPH_SOURCE_DIR "/pipelines"))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source("/pipelines")))
     if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with("talkgraph.") &&
         entry.path().parent_path().filename() != "experiments")
       files.push_back(entry.path().string());
@@ -36,7 +37,7 @@ TEST(Pipelines, AreSound) {
 TEST(Experiments, AreSound) {
   const Registry registry = all_nodes();
   std::size_t count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(TALKGRAPH_SOURCE_DIR "/pipelines/experiments")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source("/pipelines/experiments"))) {
     Diagnostics diagnostics;
     if (is_series(entry.path())) {
       EXPECT_TRUE(load_series(entry.path(), registry, {}, diagnostics)) << diagnostics.str();
@@ -53,7 +54,7 @@ TEST(Experiments, OfSpeechWriteNothing) {
   const Registry registry = all_nodes();
   for (const char* name : {"speech-parameters", "synchronisation-grid-s1"}) {
     Diagnostics diagnostics;
-    const std::string file = TALKGRAPH_SOURCE_DIR "/pipelines/experiments/" + std::string(name) + ".json";
+    const std::string file = test::source("/pipelines/experiments/") + std::string(name) + ".json";
     const auto experiment = load_experiment(file, diagnostics);
     ASSERT_TRUE(experiment) << diagnostics.str();
     const auto graphs = load_trials(*experiment, registry, {}, diagnostics);
@@ -80,7 +81,7 @@ TEST(Pipelines, OfTheSourcesCorporaLearnAsItDid) {
   const Registry registry = all_nodes();
   for (const auto& [name, dimension] : {std::pair{"lips.json", 5}, {"demnow.json", 4}}) {
     Diagnostics diagnostics;
-    const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/" + std::string(name), registry, diagnostics);
+    const auto graph = load_graph(test::source("/pipelines/") + std::string(name), registry, diagnostics);
     ASSERT_TRUE(graph) << diagnostics.str();
     const Json& nodes = graph->resolved.at("nodes");
     const Json& state = nodes.at("face/learnt/sgpdm").at("params");
@@ -94,11 +95,11 @@ TEST(Pipelines, OfTheSourcesCorporaLearnAsItDid) {
 // Each choice of speech parameters is one setting for training, synthesis and the graph that the model speaks with.
 TEST(Pipelines, SpeakWithTheSpeechParametersOfTraining) {
   const Registry registry = all_nodes();
-  const std::string fragments = TALKGRAPH_SOURCE_DIR "/pipelines/fragments/";
+  const std::string fragments = test::source("/pipelines/fragments/");
   for (const char* name : {"demo.json", "grid-s1.json", "own.json"}) {
     Diagnostics diagnostics;
     const auto graph = load_graph(
-        TALKGRAPH_SOURCE_DIR "/pipelines/" + std::string(name), registry, diagnostics,
+        test::source("/pipelines/") + std::string(name), registry, diagnostics,
         {{"nodes.face.params.speech=" + fragments + "speech-direct.json",
           "nodes.face.params.features=" + fragments + "features/plp.json", "nodes.face.params.energy=null"}});
     ASSERT_TRUE(graph) << diagnostics.str();
@@ -120,9 +121,9 @@ TEST(Pipelines, SpeakWithTheSpeechParametersOfTraining) {
 
 TEST(Pipelines, SpeakByTheStatesThatWereLearnt) {
   const Registry registry = all_nodes();
-  const std::string fragments = TALKGRAPH_SOURCE_DIR "/pipelines/fragments/";
+  const std::string fragments = test::source("/pipelines/fragments/");
   Diagnostics diagnostics;
-  const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/demo.json", registry, diagnostics,
+  const auto graph = load_graph(test::source("/pipelines/demo.json"), registry, diagnostics,
                                 {{"nodes.face.params.learn=" + fragments + "learn-em.json",
                                   "nodes.face.params.imitate=" + fragments + "imitate-em.json"}});
   ASSERT_TRUE(graph) << diagnostics.str();
@@ -205,7 +206,7 @@ TEST(Pipelines, AreDrawnWithABoxAroundEachFragment) {
 TEST(Pipelines, CanBeCompared) {
   const Registry registry = all_nodes();
   Diagnostics diagnostics;
-  const std::string file = TALKGRAPH_SOURCE_DIR "/pipelines/demo.json";
+  const std::string file = test::source("/pipelines/demo.json");
   const auto a = load_graph(file, registry, diagnostics), b = load_graph(file, registry, diagnostics, {{"held_out=5"}}),
              c = load_graph(file, registry, diagnostics, {{"outputs.clips=null", "seed=3"}});
   ASSERT_TRUE(a && b && c) << diagnostics.str();

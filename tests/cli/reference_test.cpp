@@ -13,6 +13,7 @@
 #include "nodes/types/phones.h"
 #include "nodes/types/track.h"
 #include "nodes/types/yardsticks.h"
+#include "tests/source_folder.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph {
@@ -61,7 +62,7 @@ TEST(Reference, FindsAndShowsNodeTypes) {
 }
 
 TEST(Reference, PagesAreUpToDate) {
-  const fs::path folder = TALKGRAPH_SOURCE_DIR "/docs/reference";
+  const fs::path folder = test::source("/docs/reference");
   const auto pages = reference_pages(all_nodes());
   for (const auto& [name, text] : pages) {
     std::ifstream file(folder / name);

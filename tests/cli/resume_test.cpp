@@ -11,6 +11,7 @@
 #include "nodes/all_nodes.h"
 #include "nodes/media/audio_file.h"
 #include "runtime/cache.h"
+#include "tests/source_folder.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
@@ -44,7 +45,7 @@ void write_corpus(const test::TemporaryFolder& folder) {
 
 /// Trains a state a phone, each long enough for a kill to come between.
 std::string write_graph(const test::TemporaryFolder& folder) {
-  const std::string fragments = TALKGRAPH_SOURCE_DIR "/pipelines/fragments/";
+  const std::string fragments = test::source("/pipelines/fragments/");
   return folder.write("learn.json", R"({ "nodes": {
     "recordings": { "type": "corpus.manifest", "params": { "file": "manifest.json" } },
     "parts": { "type": "corpus.parts", "in": { "recording": "recordings" } },

@@ -5,6 +5,7 @@
 #include "nodes/all_nodes.h"
 #include "nodes/media/audio_file.h"
 #include "runtime/executor.h"
+#include "tests/source_folder.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
@@ -19,7 +20,7 @@ TEST(Resynthesise, ThePipelineWritesEverySentenceAgainAsLoud) {
   const test::TemporaryFolder folder;
   const Registry registry = all_nodes();
   Diagnostics diagnostics;
-  const auto graph = load_graph(TALKGRAPH_SOURCE_DIR "/pipelines/resynthesise.json", registry, diagnostics);
+  const auto graph = load_graph(test::source("/pipelines/resynthesise.json"), registry, diagnostics);
   ASSERT_TRUE(graph) << diagnostics.str();
   RunOptions options;
   options.folder = folder.path();

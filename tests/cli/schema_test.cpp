@@ -8,6 +8,7 @@
 
 #include "experiment/experiment.h"
 #include "nodes/all_nodes.h"
+#include "tests/source_folder.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph::cli {
@@ -15,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string pipelines = TALKGRAPH_SOURCE_DIR "/pipelines/";
+const std::string pipelines = test::source("/pipelines/");
 
 /// What python3-jsonschema, which knows nothing of talkgraph, says of files; empty if it is content.
 class Schema : public testing::Test {
@@ -58,7 +59,7 @@ std::string instances(const std::vector<fs::path>& files) {
 
 TEST_F(Schema, HoldsForEveryPipelineAndExperiment) {
   EXPECT_EQ(
-      complaints(instances(files_naming("talkgraph.schema.json")) + " -i '" TALKGRAPH_SOURCE_DIR "/cli/examples.json'"),
+      complaints(instances(files_naming("talkgraph.schema.json")) + " -i '" + test::source("/cli/examples.json") + "'"),
       "");
   const std::string schema = folder_.write("experiment.schema.json", experiment_schema().dump());
   EXPECT_EQ(complaints(instances(files_naming("talkgraph.experiment.schema.json")), schema), "");

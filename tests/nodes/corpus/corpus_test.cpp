@@ -18,6 +18,7 @@
 #include "nodes/media/register.h"
 #include "nodes/types/scheme.h"
 #include "tests/nodes/media/media_test.h"
+#include "tests/source_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -102,7 +103,7 @@ TEST_F(GridTest, Errors) {
 }
 
 TEST(Grid, RealRecordings) {
-  const std::string folder = TALKGRAPH_SOURCE_DIR "/../shared/data/grid-s1";
+  const std::string folder = test::source("/../shared/data/grid-s1");
   if (!built_with_ffmpeg) GTEST_SKIP() << "built without FFmpeg";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << ", recordings of GRID, is not there";
   Grid node;

@@ -5,6 +5,7 @@
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/video_file.h"
 #include "tests/nodes/media/media_test.h"
+#include "tests/source_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -53,7 +54,7 @@ TEST(CheckVideo, ShortClips) {
 }
 
 TEST(CheckVideo, BrokenClipsOfGrid) {
-  const std::string folder = TALKGRAPH_SOURCE_DIR "/../shared/data/grid-s1/video/";
+  const std::string folder = test::source("/../shared/data/grid-s1/video/");
   if (!built_with_ffmpeg) GTEST_SKIP() << "built without FFmpeg";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << ", recordings of GRID, is not there";
   Context context;

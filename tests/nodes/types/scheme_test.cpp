@@ -6,6 +6,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/source_folder.h"
+
 namespace talkgraph {
 namespace {
 
@@ -101,7 +103,7 @@ TEST(PointScheme, AFaceWithoutAreaOrNamesIsRefused) {
 }
 
 TEST(PointScheme, TheExampleOfTheDocumentationServesThePipelines) {
-  std::ifstream page(TALKGRAPH_SOURCE_DIR "/docs/schemes.md");
+  std::ifstream page(test::source("/docs/schemes.md"));
   const std::string text{std::istreambuf_iterator<char>(page), {}};
   const auto from = text.find("```json") + 7;
   const auto scheme = *find_scheme(text.substr(text.find('{', from), text.find("```", from) - text.find('{', from)));

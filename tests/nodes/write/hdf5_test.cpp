@@ -14,6 +14,7 @@
 #include "nodes/types/recording.h"
 #include "nodes/types/segments.h"
 #include "nodes/types/track.h"
+#include "tests/source_folder.h"
 #include "tests/temporary_folder.h"
 
 namespace talkgraph {
@@ -191,7 +192,7 @@ TEST_F(WritesHdf5, WhatPythonOpens) {
   write(PhoneTrack{{{"sil", 0, 0.5}, {"aa", 0.5, 0.75}}}, "phones");
   write(Audio{Eigen::Vector3d(0, 0.5, -1), 16000}, "audio");
   write(video_from_frames({cv::Mat(2, 4, CV_8UC3, cv::Scalar(1, 2, 3))}, 25), "video");
-  const std::string check = "/usr/bin/python3 " TALKGRAPH_SOURCE_DIR "/tests/nodes/write/check_hdf5.py";
+  const std::string check = "/usr/bin/python3 " + test::source("/tests/nodes/write/check_hdf5.py");
   const int code = std::system(("cd '" + folder.file("hdf5") + "' && " + check + " > out.txt 2>&1").c_str());
   EXPECT_EQ(code, 0) << folder.read("hdf5/out.txt");
   EXPECT_THAT(folder.read("hdf5/out.txt"), testing::HasSubstr("all is as written"));
