@@ -166,8 +166,9 @@ struct Trained {
   std::vector<double> trace;
 };
 
-StochasticTraining in_parts(const TrainMrd& node) {
+StochasticTraining in_parts(const TrainMrd& node, std::uint64_t seed) {
   StochasticTraining training;
+  training.seed = seed;
   training.batch = node.batch;
   training.epochs = node.epochs;
   training.noise_held = node.epochs * node.hold_noise / std::max(1, node.iterations);
@@ -184,11 +185,10 @@ Trained train_whole(const TrainMrd& node, const std::string& subject, BayesianOb
 }
 
 /// Of all that training in parts depends on.
-Key key_of(const TrainMrd& node, const std::string& subject, BayesianObjective& objective) {
+Key key_of(StochasticTraining training, const std::string& subject, BayesianObjective& objective) {
   std::string what = subject;
   Eigen::VectorXd start = objective.start();
   double bound = objective.value(start, nullptr);
-  StochasticTraining training = in_parts(node);
   return content_key([&](Archive& ar) {
     ar("subject", what);
     ar("start", start);
@@ -197,14 +197,15 @@ Key key_of(const TrainMrd& node, const std::string& subject, BayesianObjective& 
     ar("epochs", training.epochs);
     ar("noise_held", training.noise_held);
     ar("seconds", training.seconds);
+    ar("seed", training.seed);
   });
 }
 
 Trained train_in_parts(const TrainMrd& node, const std::string& subject, BayesianObjective& objective, Context& context,
                        Random& random) {
-  StochasticTraining training = in_parts(node);
+  StochasticTraining training = in_parts(node, random.bits());
   StochasticTraining::State state;
-  Checkpoint saved(node.checkpoint, node.checkpoint.empty() ? Key{} : key_of(node, subject, objective),
+  Checkpoint saved(node.checkpoint, node.checkpoint.empty() ? Key{} : key_of(training, subject, objective),
                    [&](Archive& ar) {
                      ar("state", state);
                      for (auto& stream : objective.streams()) ar(stream.name(), stream.inducing_posterior());
@@ -214,15 +215,12 @@ Trained train_in_parts(const TrainMrd& node, const std::string& subject, Bayesia
     for (auto& stream : objective.streams()) stream.inducing_posterior() = {};
   }
   training.on_part = [&](double share) {
-    context.check_cancelled();
-    context.progress(share);
-  };
-  training.on_epoch = [&] {
     saved.save_now_and_then();
     if (context.cancelled()) saved.save();
     context.check_cancelled();
+    context.progress(share);
   };
-  training(objective, random, state);
+  training(objective, state);
   saved.remove();
   const double bound = *std::max_element(state.trace.begin(), state.trace.end());
   const auto taken = static_cast<int>(state.trace.size()) - 1;

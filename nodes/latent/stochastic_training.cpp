@@ -121,13 +121,13 @@ void fields(Archive& ar, StochasticTraining::State& state) {
   ar("mean", state.mean);
   ar("square", state.square);
   ar("steps", state.steps);
+  ar("part", state.part);
   ar("best", state.best);
   ar("trace", state.trace);
 }
 
-void StochasticTraining::operator()(BayesianObjective& objective, Random& random, State& state) const {
+void StochasticTraining::operator()(BayesianObjective& objective, State& state) const {
   const auto started = std::chrono::steady_clock::now();
-  const auto seed = random.bits();
   if (state.parameters.size() == 0) {
     state.parameters = state.best = objective.start();
     state.mean = state.square = Eigen::VectorXd::Zero(objective.size());
@@ -145,15 +145,15 @@ void StochasticTraining::operator()(BayesianObjective& objective, Random& random
     }
     Random order(seed, "parts", std::to_string(epoch));
     const auto parts = parts_of(objective.latents(), batch, order);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      training.step(parts[i], epoch);
-      const double done = static_cast<double>(i + 1) / static_cast<double>(parts.size());
+    while (state.part < std::ssize(parts)) {
+      training.step(parts[static_cast<std::size_t>(state.part++)], epoch);
+      const double done = static_cast<double>(state.part) / static_cast<double>(parts.size());
       if (on_part) on_part((static_cast<double>(epoch) + done) / epochs);
     }
+    state.part = 0;
     const double bound = objective.value(state.parameters, nullptr);
     if (bound > *std::max_element(state.trace.begin(), state.trace.end())) state.best = state.parameters;
     state.trace.push_back(bound);
-    if (on_epoch) on_epoch();
   }
   state.ended = converged(*this, state.trace, objective.rows()) ? "converged" : "epoch limit";
 }

@@ -22,20 +22,21 @@ struct StochasticTraining {
   double tolerance = 0.01;    ///< of what the bound gains in `patience` epochs, a frame; less is the end
   int patience = 10;
   double seconds = std::numeric_limits<double>::infinity();  ///< checked after each epoch
-  std::function<void(double share)> on_part;
-  std::function<void()> on_epoch;  ///< when the state is complete
+  std::uint64_t seed = 1;                                    ///< of the parts' order
+  std::function<void(double share)> on_part;                 ///< called after each part, when the state is complete
 
-  /// Where training stands after an epoch; the inducing variables stand in the objective.
+  /// Where training stands after a part; the inducing variables stand in the objective.
   struct State {
     Eigen::VectorXd parameters;    ///< now; empty before the first epoch
     Eigen::VectorXd mean, square;  ///< of their gradient, as Adam remembers it
     std::int64_t steps = 0;        ///< parts taken
+    std::int64_t part = 0;         ///< those of this epoch
     Eigen::VectorXd best;          ///< the parameters of the greatest bound
     std::vector<double> trace;     ///< the bound of all frames at the start and after each epoch
     std::string ended;             ///< why
   };
   /// From objective.start(), or on from a state to the same bits. Throws FactorisationError.
-  void operator()(BayesianObjective& objective, Random& random, State& state) const;
+  void operator()(BayesianObjective& objective, State& state) const;
 };
 void fields(Archive& ar, StochasticTraining::State& state);
 

@@ -295,6 +295,35 @@ TEST(TrainMrd, GoesOnWhereItWasStopped) {
     }
 }
 
+TEST(TrainMrd, InPartsGoesOnFromAnyPartButNotWithAnotherSeed) {
+  const StateData data = cut(shared_and_private(40, 1));
+  const test::TemporaryFolder folder;
+  TrainMrd node;
+  node.batch = 10;
+  node.epochs = 8;
+  const auto with_seed = [&](std::uint64_t seed) {
+    Context context;
+    Random random(seed);
+    return node(data, context, random).model;
+  };
+  const Sgpdm whole = with_seed(1), other = with_seed(2);
+  EXPECT_NE(other.latents, whole.latents);
+  node.checkpoint = folder.file("checkpoints");
+  for (const double share : {0.2, 0.45, 0.6, 0.75}) {
+    std::atomic<bool> cancel = false;
+    Context context;
+    context.cancel = &cancel;
+    context.on_progress = [&](double done) { cancel = done > share; };
+    Random random(1);
+    EXPECT_THROW(node(data, context, random), Cancelled);
+    EXPECT_FALSE(std::filesystem::is_empty(node.checkpoint)) << share;
+    EXPECT_EQ(with_seed(2).latents, other.latents) << share;
+    const Sgpdm resumed = with_seed(1);
+    EXPECT_EQ(resumed.latents, whole.latents) << share;
+    EXPECT_EQ(resumed.trace, whole.trace) << share;
+  }
+}
+
 TEST(TrainMrd, KeepsToItsTimeLimit) {
   for (const int batch : {0, 20}) {
     TrainMrd node;
