@@ -40,7 +40,10 @@ void describe_maximisation(Description<Node>& d) {
       .doc("first iterations in which noise stays as it is, so that it does not swallow the signal");
   param("time_limit", &Maximisation::time_limit)
       .at_least(0)
-      .doc("seconds after which training stops; 0: none. What comes of it depends on the machine");
+      .doc(
+          "seconds after which training stops, counted anew where it is gone on with; 0: none. What comes of it "
+          "depends on "
+          "the machine");
   param("checkpoint", &Maximisation::checkpoint)
       .doc("folder where unfinished training is saved every ten seconds and gone on from after a kill; empty: none");
 }

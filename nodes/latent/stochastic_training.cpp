@@ -6,6 +6,8 @@
 #include <numeric>
 #include <string>
 
+#include "graph/random.h"
+
 namespace talkgraph {
 
 namespace {
@@ -145,13 +147,19 @@ void StochasticTraining::operator()(BayesianObjective& objective, State& state) 
     }
     Random order(seed, "parts", std::to_string(epoch));
     const auto parts = parts_of(objective.latents(), batch, order);
-    while (state.part < std::ssize(parts)) {
-      training.step(parts[static_cast<std::size_t>(state.part++)], epoch);
-      const double done = static_cast<double>(state.part) / static_cast<double>(parts.size());
-      if (on_part) on_part((static_cast<double>(epoch) + done) / epochs);
+    double bound = 0;
+    try {
+      while (state.part < std::ssize(parts)) {
+        training.step(parts[static_cast<std::size_t>(state.part++)], epoch);
+        const double done = static_cast<double>(state.part) / static_cast<double>(parts.size());
+        if (on_part) on_part((static_cast<double>(epoch) + done) / epochs);
+      }
+      bound = objective.value(state.parameters, nullptr);
+    } catch (const FactorisationError&) {
+      state.ended = "a matrix cannot be factorised";
+      return;
     }
     state.part = 0;
-    const double bound = objective.value(state.parameters, nullptr);
     if (bound > *std::max_element(state.trace.begin(), state.trace.end())) state.best = state.parameters;
     state.trace.push_back(bound);
   }

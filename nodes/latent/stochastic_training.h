@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "graph/archive.h"
-#include "graph/random.h"
 #include "nodes/latent/bayesian_objective.h"
 
 namespace talkgraph {
@@ -35,7 +34,8 @@ struct StochasticTraining {
     std::vector<double> trace;     ///< the bound of all frames at the start and after each epoch
     std::string ended;             ///< why
   };
-  /// From objective.start(), or on from a state to the same bits. Throws FactorisationError.
+  /// From objective.start(), or on from a state to the same bits. Ends, with the best point so far, where a matrix
+  /// cannot be factorised any more; throws FactorisationError if none can at the start.
   void operator()(BayesianObjective& objective, State& state) const;
 };
 void fields(Archive& ar, StochasticTraining::State& state);

@@ -26,8 +26,9 @@ std::vector<Pair> pair_up(const Collected<Track>& audio, const Collected<Track>&
     const Track *a = &audio[i], *v = visual.find(audio.key(i));
     if (!v) continue;
     const Eigen::Index frames = common_frames(audio.key(i), a->frames(), "audio frames", v->frames(), "visual frames");
-    if (!a->values.allFinite() || !v->values.allFinite())
-      throw std::runtime_error(audio.key(i) + ": NaN or infinite values");
+    for (const auto& [track, what] : {std::pair(a, "audio"), std::pair(v, "visual")})
+      if (!track->values.allFinite())
+        throw std::runtime_error(audio.key(i) + ": NaN or infinite " + what + " features: look at the stage before");
     pairs.push_back({a, v, frames});
     if (a->dimension() != pairs[0].audio->dimension() || v->dimension() != pairs[0].visual->dimension())
       throw std::runtime_error(audio.key(i) + ": other dimensions than the tracks before");
