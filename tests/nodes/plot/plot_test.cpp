@@ -69,6 +69,8 @@ TEST(Bars, EndWhereTheirValuesAre) {
   EXPECT_THAT(svg, HasSubstr("M60.0 36.0H180.0"));  // the whisker
   EXPECT_THAT(svg, HasSubstr("no value"));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(draw_bars("", {{"labels", {{"phones", 1163, NAN}, {"frames", 3.2e6, NAN}}}}),
+              AllOf(HasSubstr(">1163<"), HasSubstr(">3.2e+06<")));
   EXPECT_THAT(draw_bars("", {}), HasSubstr("</svg>"));
 }
 
