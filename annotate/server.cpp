@@ -4,15 +4,17 @@
 
 #include <stdexcept>
 
-#include "annotate/bounded_server.h"
 #include "nodes/codecs/codecs.h"
 #include "nodes/types/codec.h"
+#include "web/server.h"
 
 namespace talkgraph::annotate {
 namespace {
 
 using httplib::Request;
 using httplib::Response;
+using web::answer;
+using web::Refusal;
 
 constexpr const char* page_html =
 #include "annotate/index.html.inc"
@@ -25,13 +27,7 @@ constexpr const char* page_script =
     ;
 
 constexpr auto address = "127.0.0.1";
-constexpr std::size_t longest_body = 1 << 18, longest_request = longest_body + (1 << 15);
-
-/// What a request is refused with.
-struct Refusal : std::runtime_error {
-  Refusal(int status, const std::string& what) : std::runtime_error(what), status(status) {}
-  int status;
-};
+constexpr std::size_t longest_body = 1 << 18;
 
 Json to_json(const Shape& points) {
   Json all = Json::array();
@@ -53,15 +49,10 @@ Shape points_in(const Json& json) {
 
 Annotation annotation_in(const std::string& body) {
   constexpr int deepest = 4;
-  const auto json = Json::parse(
-      body,
-      [](int depth, Json::parse_event_t, const Json&) {
-        if (depth > deepest) throw Refusal(400, "an object with \"points\" and \"done\" is expected");
-        return true;
-      },
-      false);
+  const auto expected = "an object with \"points\" and \"done\" is expected";
+  const auto json = web::parse(body, deepest, expected);
   if (!json.is_object() || !json.contains("points") || !json.contains("done") || !json["done"].is_boolean())
-    throw Refusal(400, "an object with \"points\" and \"done\" is expected");
+    throw Refusal(400, expected);
   return {points_in(json["points"]), json["done"].get<bool>()};
 }
 
@@ -96,47 +87,14 @@ Json to_json(const PointScheme& scheme) {
 
 /// A name that leads here only by a trick (DNS rebinding), or a page of another site, is not served.
 void check_source(const Request& request) {
-  const auto host = request.get_header_value("Host");
-  const auto name = host.substr(0, host.find(':'));
+  const auto name = web::host_of(request);
   if (name != address && name != "localhost")
     throw Refusal(403, "this server is reached as 127.0.0.1 or localhost, and by no other name");
-  if (request.has_header("Origin") && request.get_header_value("Origin") != "http://" + host)
+  if (request.has_header("Origin") &&
+      request.get_header_value("Origin") != "http://" + request.get_header_value("Host"))
     throw Refusal(403, "a page of another origin asks");
+  if (request.has_header("Range")) throw Refusal(400, "a request with Range is not served");
 }
-
-/// The page sends bodies as they are, with their length, which bounds them; and asks for whole files.
-void check_kind(const Request& request) {
-  for (const char* name : {"Content-Encoding", "Transfer-Encoding", "Range"})
-    if (request.has_header(name)) throw Refusal(400, fmt::format("a request with {} is not served", name));
-}
-
-void answer(Response& response, const Json& json, int status = 200) {
-  response.status = status;
-  response.set_content(json.dump(), "application/json");
-}
-
-void answer_failure(Response& response, const std::exception_ptr& failure) {
-  try {
-    std::rethrow_exception(failure);
-  } catch (const Refusal& e) {
-    answer(response, {{"error", e.what()}}, e.status);
-  } catch (const std::invalid_argument& e) {
-    answer(response, {{"error", e.what()}}, 400);
-  } catch (const std::exception& e) {
-    answer(response, {{"error", e.what()}}, 500);
-  }
-}
-
-const httplib::Headers headers = {
-    {"Content-Security-Policy",
-     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; "
-     "form-action 'none'; frame-ancestors 'none'"},
-    {"X-Content-Type-Options", "nosniff"},
-    {"Cross-Origin-Resource-Policy", "same-origin"},
-    {"Cross-Origin-Opener-Policy", "same-origin"},
-    {"Referrer-Policy", "no-referrer"},
-    {"Cache-Control", "no-store"},
-};
 
 }  // namespace
 
@@ -206,41 +164,17 @@ struct Server::State {
     server.Put(frame, [this](const Request& in, Response& out) { write(in, out); });
   }
 
-  void protect() {
-    server.set_default_headers(headers);
-    server.set_payload_max_length(longest_body);
-    server.set_pre_routing_handler([](const Request& request, Response& response) {
-      try {
-        check_source(request);
-        check_kind(request);
-        return httplib::Server::HandlerResponse::Unhandled;
-      } catch (const Refusal&) {
-        answer_failure(response, std::current_exception());
-        return httplib::Server::HandlerResponse::Handled;
-      }
-    });
-    server.set_exception_handler([](const Request&, Response& response, const std::exception_ptr& failure) {
-      answer_failure(response, failure);
-    });
-    // The library would let several servers share a port.
-    server.set_socket_options([](socket_t socket) {
-      const int yes = 1;
-      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    });
-  }
-
   Project& project;
   Context context;
-  BoundedServer server{longest_request};
+  web::Server server{{.longest_body = longest_body, .policy = "img-src 'self'", .check = check_source}};
 };
 
 Server::Server(Project& project, int port) : state_(std::make_unique<State>(project)) {
-  state_->protect();
   state_->route();
-  auto& server = state_->server;
-  port_ = port == 0 ? server.bind_to_any_port(address) : server.bind_to_port(address, port) ? port : -1;
-  if (port_ < 0)
+  const auto got = state_->server.bind(address, port);
+  if (!got)
     throw std::runtime_error(fmt::format("port {} is taken: name another with --port, or 0 for any free one", port));
+  port_ = *got;
 }
 
 Server::~Server() = default;

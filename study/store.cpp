@@ -144,12 +144,13 @@ Store::Store(const std::filesystem::path& folder, const Study& study)
   report_ = noted(database_, "report").value();
 }
 
-std::optional<std::string> Store::invite() {
+std::optional<std::string> Store::invite(bool agreed) {
   const std::lock_guard lock(mutex_);
   Transaction all(database_);
   if (number(database_, "SELECT count(*) FROM participant") >= most_participants) return std::nullopt;
   const auto token = random_token();
-  database_.run("INSERT INTO participant (token, seed) VALUES (?, ?)", token, random_bytes<std::int64_t>());
+  database_.run("INSERT INTO participant (token, seed, agreed) VALUES (?, ?, ?)", token, random_bytes<std::int64_t>(),
+                agreed ? now() : 0);
   all.commit();
   return token;
 }

@@ -36,8 +36,9 @@ class Store {
   const std::string& start_token() const { return start_; }
   const std::string& report_token() const { return report_; }
 
-  /// Makes room for somebody and gives the token of the link. Nothing, where no more may come.
-  std::optional<std::string> invite();
+  /// Makes room for somebody, who may have agreed already, and gives the token of the link. Nothing, where no more may
+  /// come.
+  std::optional<std::string> invite(bool agreed = false);
   std::optional<Taker> find(const std::string& token) const;
   void agree(const Taker& taker);
   void keep_profile(const Taker& taker, const std::map<std::string, int>& profile);

@@ -14,6 +14,7 @@
 #include "cli/run.h"
 #include "cli/samples.h"
 #include "cli/speak.h"
+#include "cli/study_serve.h"
 #include "experiment/experiment.h"
 #include "graph/output_file.h"
 #include "graph/plugin.h"
@@ -223,6 +224,21 @@ int main(int argc, char** argv) {
                            "point scheme, by its name or .json file (default: the manifest's, else ibug68)");
   annotate_app->add_option("--seed", annotation.project.seed, "of the choice of frames")->capture_default_str();
 
+  auto* study_app = app.add_subcommand("study", "ask people what they think of synthetic faces");
+  study_app->require_subcommand(1);
+  StudyServeCommand study_serve;
+  auto* study_serve_app = study_app->add_subcommand("serve", "serve the page on which people take a study");
+  study_serve_app->add_option("folder", graph, "of the study")->required();
+  study_serve_app->add_option("--port", study_serve.server.port, "of the page; 0: any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  study_serve_app->add_option("--listen", study_serve.server.listen, "address; only this computer reaches the default")
+      ->capture_default_str();
+  study_serve_app->add_option("--url", study_serve.server.url,
+                              "by which people reach the page, behind a proxy for one");
+  study_serve_app->add_option("--invite", study_serve.invite, "print so many new links, each for one person")
+      ->check(CLI::Range(0, 10000));
+
   auto* check_app = app.add_subcommand("check", "check graphs without running them");
   check_app->add_option("graphs", files, "graph files")->required();
   check_app->add_option("--set", sets, "path=value")->take_all()->allow_extra_args(false);
@@ -280,6 +296,7 @@ int main(int argc, char** argv) {
       if (*corpus_check_app) return check_corpus(corpus, run, registry);
       if (*corpus_new_app) return new_corpus(corpus);
       if (*annotate_app) return run_annotate(graph, annotation);
+      if (*study_serve_app) return run_study_serve(graph, study_serve);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
       if (*diff_app) return diff(graph, other.empty() ? graph : other, registry, sets);
