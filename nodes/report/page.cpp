@@ -57,8 +57,7 @@ std::string cell(const Table& table, std::size_t row, std::size_t c) {
     return column < 0 ? NAN : shown(table.cells[row][static_cast<std::size_t>(column)]);
   };
   const double spread = beside(" std"), low = beside(" low"), high = beside(" high");
-  if (std::isnan(spread)) return "<td>" + number(value) + "</td>";
-  std::string text = fmt::format("<td>{:.3g} ± {:.2g}", value, spread);
+  std::string text = "<td>" + (std::isnan(spread) ? number(value) : fmt::format("{:.3g} ± {:.2g}", value, spread));
   if (!std::isnan(low)) text += fmt::format("<br><small>{:.3g} to {:.3g}</small>", low, high);
   return text + "</td>";
 }

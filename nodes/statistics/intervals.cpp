@@ -1,9 +1,11 @@
 #include "nodes/statistics/intervals.h"
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 namespace talkgraph {
 namespace {
@@ -50,6 +52,17 @@ ConfidenceInterval bootstrap_interval(const std::vector<double>& values, double 
   }
   std::sort(means.begin(), means.end());
   return {quantile(means, (1 - confidence) / 2), quantile(means, (1 + confidence) / 2)};
+}
+
+ConfidenceInterval wilson_interval(std::size_t part, std::size_t whole, double confidence) {
+  if (part > whole) throw std::invalid_argument("a part must not be larger than the whole");
+  if (whole == 0) return kUnknown;
+  const double z = boost::math::quantile(boost::math::normal(), (1 + confidence) / 2);
+  const auto n = static_cast<double>(whole);
+  const double share = static_cast<double>(part) / n, shrink = 1 + z * z / n;
+  const double middle = (share + z * z / (2 * n)) / shrink;
+  const double half = z / shrink * std::sqrt(share * (1 - share) / n + z * z / (4 * n * n));
+  return {part == 0 ? 0 : middle - half, part == whole ? 1 : middle + half};
 }
 
 }  // namespace talkgraph

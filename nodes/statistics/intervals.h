@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "graph/description.h"
@@ -29,5 +30,10 @@ ConfidenceInterval student_interval(const std::vector<double>& values, double co
 /// the percentile method), interpolated linearly. NaN of fewer than two values.
 ConfidenceInterval bootstrap_interval(const std::vector<double>& values, double confidence, int samples,
                                       Random& random);
+
+/// Of a share, `part` of `whole`, whose cases are independent: the shares that a test by the normal approximation would
+/// not reject (Wilson 1927); within 0 and 1 also where all or none are part. NaN of nothing. Throws
+/// std::invalid_argument if the part is larger than the whole.
+ConfidenceInterval wilson_interval(std::size_t part, std::size_t whole, double confidence);
 
 }  // namespace talkgraph

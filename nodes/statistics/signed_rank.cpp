@@ -5,29 +5,10 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "nodes/statistics/ranks.h"
+
 namespace talkgraph {
 namespace {
-
-/// Ranks of sizes, doubled: whole numbers where equal sizes share their mean rank.
-struct Ranks {
-  std::vector<std::size_t> doubled;
-  double ties = 0;  ///< Σ t³ − t over groups of t equal sizes
-};
-
-Ranks rank(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto size = [&](std::size_t i) { return std::abs(values[i]); };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return size(a) < size(b); });
-  Ranks ranks{std::vector<std::size_t>(values.size()), 0};
-  for (std::size_t from = 0, to = 0; from < order.size(); from = to) {
-    while (to < order.size() && size(order[to]) == size(order[from])) ++to;
-    for (std::size_t i = from; i < to; ++i) ranks.doubled[order[i]] = from + 1 + to;
-    const auto t = static_cast<double>(to - from);
-    ranks.ties += t * t * t - t;
-  }
-  return ranks;
-}
 
 /// Twice the share of all choices of signs whose positive ranks sum to `doubled_sum` or less, at most 1.
 double exact_p(const std::vector<std::size_t>& doubled, std::size_t doubled_sum) {
@@ -53,7 +34,9 @@ SignedRank signed_rank(const std::vector<double>& differences, std::size_t exact
   }
   SignedRank test{.pairs = unequal.size()};
   if (unequal.empty()) return test;
-  const Ranks ranks = rank(unequal);
+  std::vector<double> sizes;
+  for (const double d : unequal) sizes.push_back(std::abs(d));
+  const Ranks ranks = ranks_of(sizes);
   std::size_t above = 0, below = 0;  // doubled
   for (std::size_t i = 0; i < unequal.size(); ++i) (unequal[i] > 0 ? above : below) += ranks.doubled[i];
   const std::size_t least = std::min(above, below);

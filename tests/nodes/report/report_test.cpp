@@ -85,6 +85,13 @@ TEST_F(Report, ShowsIntervalsBelowTheirMeans) {
   EXPECT_THAT(html, HasSubstr("<td>0.5 ± 0.12<br><small>0.4 to 0.6</small></td><td>0.01</td><td>2</td>"));
 }
 
+TEST_F(Report, ShowsIntervalsOfSharesThatHaveNoDeviation) {
+  const std::string html =
+      html_table("t", {"", "clips", {"share", "share low", "share high"}, {"a"}, {{0.5, 0.4, 0.6}}});
+  EXPECT_THAT(html, HasSubstr("<th scope=\"col\">share</th></tr>"));
+  EXPECT_THAT(html, HasSubstr("<td>0.5<br><small>0.4 to 0.6</small></td></tr>"));
+}
+
 TEST_F(Report, IsWrittenOfNothingAsWell) {
   EXPECT_EQ(WriteReport{}({}, {}, {}, context).path, "report.html");
   EXPECT_EQ(read("metrics.json"), "{}\n");

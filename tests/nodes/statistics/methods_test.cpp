@@ -110,7 +110,8 @@ TEST(CompareMethods, RefusesWhatDoesNotFit) {
 TEST(RegisterStatistics, DescribesEveryNode) {
   Registry registry;
   register_statistics(registry);
-  EXPECT_TRUE(registry.find("statistics.methods"));
+  for (const char* name : {"statistics.groups", "statistics.methods", "statistics.proportions"})
+    EXPECT_TRUE(registry.find(name)) << name;
 }
 
 }  // namespace

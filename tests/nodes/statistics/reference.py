@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the reference values of statistics_test.cpp, by scipy (Debian's python3-scipy)."""
+"""Prints the reference values of statistics_test.cpp and rank_sum_test.cpp, by scipy (Debian's python3-scipy)."""
 from itertools import product
 
 import numpy as np
@@ -47,3 +47,31 @@ show(np.mean(plain), np.std(plain, ddof=1))
 p = np.array([0.04, 0.001, 0.2, 0.013, 0.013, 0.9])
 show(*corrected(p, "holm"))
 show(*corrected(p, "bh"))
+
+# rank_sum_test.cpp
+untied_a = [0.8, 1.7, 2.9, 3.1, 4.6, 5.2, 7.7]
+untied_b = [0.3, 1.1, 1.9, 2.2, 2.4, 3.9]
+scores_a = [4, 5, 4, 3, 5, 4, 4, 5]  # opinions: many ties, samples of different sizes
+scores_b = [3, 4, 2, 3, 3, 4, 5, 2, 3]
+thirds_a = [round((7 * i * i) % 4 / 3, 12) for i in range(50)]  # shares of three clips read right
+thirds_b = [round((5 * i + i // 7) % 4 / 3, 12) for i in range(47)]
+long_a = [((37 * i) % 101) / 8 for i in range(40)]  # no ties
+long_b = [((53 * i) % 97) / 8 + 0.01 for i in range(45)]
+
+
+def rank_sum_by_all_choices(a, b):  # also by scipy: every permutation, twice the smaller tail
+    sum_of_a = lambda x, y, axis: stats.rankdata(np.concatenate([x, y], axis), axis=axis)[..., : x.shape[axis]].sum(axis)
+    test = stats.permutation_test((a, b), sum_of_a, vectorized=True, n_resamples=np.inf, batch=5000)
+    return test.statistic - len(a) * (len(a) + 1) / 2, test.pvalue
+
+
+show(*stats.mannwhitneyu(untied_a, untied_b, method="exact"))
+show(*stats.mannwhitneyu(untied_a, untied_b, method="asymptotic"))
+show(*rank_sum_by_all_choices(scores_a, scores_b))
+show(*stats.mannwhitneyu(scores_a, scores_b, method="asymptotic"))
+show(*stats.mannwhitneyu(thirds_a, thirds_b, method="asymptotic"))
+show(*stats.mannwhitneyu(long_a, long_b, method="exact"))
+show(*stats.mannwhitneyu(long_a, long_b, method="asymptotic"))
+for part, whole, confidence in [(38, 100, 0.95), (7, 16, 0.99), (0, 12, 0.95), (12, 12, 0.95), (1, 1, 0.9)]:
+    show(*stats.binomtest(part, whole).proportion_ci(confidence, "wilson"))
+show(2 * np.arcsin(np.sqrt(0.38)) - 2 * np.arcsin(np.sqrt(0.7)))
