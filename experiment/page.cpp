@@ -122,23 +122,6 @@ BarPanel bar_panel(const Experiment& experiment, const OutputEstimates& estimate
   return panel;
 }
 
-std::string number_cell(const std::string& html) { return "<td>" + html + "</td>"; }
-std::string text_cell(const std::string& html) { return "<td class=\"text\">" + html + "</td>"; }
-
-/// Headings are texts, cells are cells; a heading stands where the cells below it do.
-std::string table(const std::string& caption, const std::vector<std::string>& head,
-                  const std::vector<std::vector<std::string>>& lines) {
-  std::string out =
-      fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr>", escape_markup(caption));
-  for (std::size_t c = 0; c < head.size(); ++c) {
-    const bool text = !lines.empty() && lines[0][c].starts_with("<td class");
-    out += fmt::format("<th scope=\"col\"{}>{}</th>", text ? " class=\"text\"" : "", escape_markup(head[c]));
-  }
-  out += "</tr></thead>\n<tbody>\n";
-  for (const auto& line : lines) out += fmt::format("<tr>{}</tr>\n", fmt::join(line, ""));
-  return out + "</tbody>\n</table></div>\n";
-}
-
 /// What rounding left of a zero is shown as one; the files keep every digit.
 double shown_number(double v) { return std::abs(v) < 1e-12 ? 0 : v; }
 
@@ -172,7 +155,7 @@ std::string score_table(const Experiment& experiment, const OutputEstimates& est
       line.push_back(number_cell(it == cells.end() ? "–" : number_text(*it->second)));
     }
   }
-  return table(estimates.output, head, lines);
+  return html_table(estimates.output, head, lines);
 }
 
 /// Says what the numbers behind ± are.
@@ -278,8 +261,8 @@ std::string trial_table(const Experiment& experiment, const std::vector<Graph>& 
                      number_cell(fmt::format("{}", result.calls)), number_cell(fmt::format("{}", result.loaded)),
                      text_cell("<small>" + what + "</small>")});
   }
-  return "<h2>Runs</h2>\n" + table("How each went, and what it did differently",
-                                   {"run", "status", "seconds", "calls", "found", "differs in"}, lines);
+  return "<h2>Runs</h2>\n" + html_table("How each went, and what it did differently",
+                                        {"run", "status", "seconds", "calls", "found", "differs in"}, lines);
 }
 
 }  // namespace

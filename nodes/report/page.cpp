@@ -1,6 +1,7 @@
 #include "nodes/report/page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -110,6 +111,22 @@ std::string html_table(const std::string& name, const Table& table) {
       if (!is_beside_another(table, c)) out += cell(table, r, c);
     out += "</tr>\n";
   }
+  return out + "</tbody>\n</table></div>\n";
+}
+
+std::string number_cell(const std::string& html) { return "<td>" + html + "</td>"; }
+std::string text_cell(const std::string& html) { return "<td class=\"text\">" + html + "</td>"; }
+
+std::string html_table(const std::string& caption, const std::vector<std::string>& head,
+                       const std::vector<std::vector<std::string>>& lines) {
+  std::string out =
+      fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr>", escape_markup(caption));
+  for (std::size_t c = 0; c < head.size(); ++c) {
+    const bool text = !lines.empty() && lines[0][c].starts_with("<td class");
+    out += fmt::format("<th scope=\"col\"{}>{}</th>", text ? " class=\"text\"" : "", escape_markup(head[c]));
+  }
+  out += "</tr></thead>\n<tbody>\n";
+  for (const auto& line : lines) out += fmt::format("<tr>{}</tr>\n", fmt::join(line, ""));
   return out + "</tbody>\n</table></div>\n";
 }
 

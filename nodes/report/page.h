@@ -14,6 +14,11 @@ std::string html_close();
 
 /// A table with its title as caption; a column and its "NAME std" share cells, "0.59 ± 0.08".
 std::string html_table(const std::string& name, const Table& table);
+/// A table of cells, which the two below make of HTML; a heading stands where the cells below it do.
+std::string html_table(const std::string& caption, const std::vector<std::string>& head,
+                       const std::vector<std::vector<std::string>>& lines);
+std::string number_cell(const std::string& html);
+std::string text_cell(const std::string& html);
 std::string html_plot(const Plot& plot);
 /// Whether a browser shows the file as a picture, by its ending.
 bool is_picture(const std::string& path);
