@@ -77,6 +77,12 @@ Json inventory(const fs::path& entry) {
   return files;
 }
 
+std::uint64_t bytes_of(const Json& entry) {
+  std::uint64_t bytes = 0;
+  for (const auto& [name, file] : entry["files"].items()) bytes += file["bytes"].get<std::uint64_t>();
+  return bytes;
+}
+
 std::string sum_of(Json entry) {
   entry.erase("sum");
   return KeyMaker().add(entry.dump()).key().str();
@@ -196,6 +202,7 @@ Cache::Result Cache::load(const Key& key, const NodeType& type, const fs::path& 
   result.outputs.resize(type.outputs.size());
   try {
     result.seconds = entry["seconds"].get<double>();
+    result.bytes = bytes_of(entry);
     result.warnings = entry["warnings"].get<std::vector<std::string>>();
     for (std::size_t p = 0; p < type.outputs.size(); ++p)
       if (entry["files"].contains(output_file(p)))
@@ -219,7 +226,7 @@ void Cache::deliver(const Key& key, const Json& entry, const fs::path& folder) c
   }
 }
 
-void Cache::store(const Key& key, const Json& about, const Result& result, const fs::path& written) {
+std::uint64_t Cache::store(const Key& key, const Json& about, const Result& result, const fs::path& written) {
   const Workshop work(work_folder());
   const fs::path made = work.path() / key.str();
   fs::create_directory(made);
@@ -234,8 +241,7 @@ void Cache::store(const Key& key, const Json& about, const Result& result, const
   entry["sum"] = sum_of(entry);
   write_file(made / "entry.json", entry.dump(1));
   fs::create_directories(place(key).parent_path());
-  std::uint64_t bytes = 0;
-  for (const auto& [name, file] : entry["files"].items()) bytes += file["bytes"].get<std::uint64_t>();
+  const auto bytes = bytes_of(entry);
   const auto put = [&] {
     std::error_code error;
     fs::rename(made, place(key), error);
@@ -247,9 +253,11 @@ void Cache::store(const Key& key, const Json& about, const Result& result, const
   if (error && !taken()) throw fs::filesystem_error("the cache cannot keep a result", place(key), error);
   stored_ = true;
   // Looking at all entries is not free: done whenever another tenth of the limit has come.
-  if ((grown_ += bytes) < limit_ / 10) return;
-  grown_ = 0;
-  prune(limit_, opened_);
+  if ((grown_ += bytes) >= limit_ / 10) {
+    grown_ = 0;
+    prune(limit_, opened_);
+  }
+  return bytes;
 }
 
 bool Cache::remove(const Key& key) const {

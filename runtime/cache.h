@@ -43,6 +43,7 @@ class Cache {
     std::vector<Value> outputs;         ///< one a port; empty where there is nothing
     std::vector<std::string> warnings;  ///< that the call gave
     double seconds = 0;                 ///< that it took
+    std::uint64_t bytes = 0;            ///< on disk, where it was loaded
   };
 
   /// The right to make a result; until it goes, others of this process who want the same one wait.
@@ -80,8 +81,9 @@ class Cache {
   /// The outputs of a call of `type`; what its sink wrote is put below `folder`. Throws Damaged.
   Result load(const Key& key, const NodeType& type, const std::filesystem::path& folder) const;
   /// Keeps a result; `written` is the folder with a sink's files, or empty. Where another process was faster its
-  /// entry stays. Throws std::runtime_error, on a full disk for one; the cache is then as before.
-  void store(const Key& key, const Json& about, const Result& result, const std::filesystem::path& written);
+  /// entry stays. Throws std::runtime_error, on a full disk for one; the cache is then as before. Gives the
+  /// bytes that it takes.
+  std::uint64_t store(const Key& key, const Json& about, const Result& result, const std::filesystem::path& written);
   /// Removes an entry; false if it is still there.
   bool remove(const Key& key) const;
 

@@ -72,6 +72,7 @@ void add(NodeStats& sum, const NodeStats& part) {
   sum.loaded += part.loaded;
   sum.unneeded += part.unneeded;
   sum.saved += part.saved;
+  sum.kept += part.kept;
   sum.wall += part.wall;
   sum.cpu += part.cpu;
   add_ports(sum.in, part.in);
@@ -279,6 +280,7 @@ void Caller::load(Station& station) {
   }
   for (auto* o : options_.observers) o->loaded(n, item);
   station.books.saved += result.seconds;
+  station.books.kept += result.bytes;
   for (const auto& warning : result.warnings)
     for (auto* o : options_.observers) o->warn(n, item, warning);
   station.outputs = std::move(result.outputs);
@@ -327,7 +329,7 @@ void Caller::call_and_keep(Station& station) {
   result.seconds = 1e-9 * static_cast<double>(nanoseconds(CLOCK_MONOTONIC) - start);
   if (!keeper_ || tainted(n, item)) return;
   result.outputs = station.outputs;
-  keeper_->keep(n, item, result, desk ? desk->path() : "");
+  station.books.kept += keeper_->keep(n, item, result, desk ? desk->path() : "");
 }
 
 void Caller::claim(const Station& station, const std::filesystem::path& file) {

@@ -53,20 +53,21 @@ Cache::Result Keeper::load(int n, const std::string& item) const {
   return cache_.load(forecast_.key(n, item), *graph_.nodes[static_cast<std::size_t>(n)].type, folder_);
 }
 
-void Keeper::keep(int n, const std::string& item, const Cache::Result& result, const fs::path& written) {
+std::uint64_t Keeper::keep(int n, const std::string& item, const Cache::Result& result, const fs::path& written) {
   const Key key = forecast_.key(n, item);
-  if (!key || full_) return;
+  if (!key || full_) return 0;
   if (const auto file = forecast_.changed_file(n, item); !file.empty()) {
     if (!changed_.exchange(true))
       warn_(fmt::format(
           "{} changed while the run was at work: what depends on it is not kept for the next run; run again",
           file.string()));
-    return;
+    return 0;
   }
   try {
-    cache_.store(key, forecast_.about(n, item), result, written);
+    return cache_.store(key, forecast_.about(n, item), result, written);
   } catch (const std::exception& e) {
     give_up(e.what());
+    return 0;
   }
 }
 

@@ -30,8 +30,10 @@ class Keeper {
   std::vector<std::string> files(int node, const std::string& item) const;
   /// Throws Cache::Damaged.
   Cache::Result load(int node, const std::string& item) const;
-  /// Keeps a result; `written` holds what a sink wrote, or is empty. What cannot be kept is not an error of the run.
-  void keep(int node, const std::string& item, const Cache::Result& result, const std::filesystem::path& written);
+  /// Keeps a result; `written` holds what a sink wrote, or is empty. Gives its bytes on disk: 0 if it cannot be kept,
+  /// which is not an error of the run.
+  std::uint64_t keep(int node, const std::string& item, const Cache::Result& result,
+                     const std::filesystem::path& written);
 
  private:
   void give_up(const std::string& why);

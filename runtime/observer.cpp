@@ -35,6 +35,7 @@ Json to_json(const Graph& graph, const RunReport& report) {
                              {"loaded", stats.loaded},
                              {"unneeded", stats.unneeded},
                              {"saved_seconds", stats.saved},
+                             {"kept_bytes", stats.kept},
                              {"seconds", stats.wall},
                              {"cpu_seconds", stats.cpu}});
   }

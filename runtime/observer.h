@@ -34,6 +34,7 @@ struct NodeStats {
   std::uint64_t loaded = 0;    ///< from the cache
   std::uint64_t unneeded = 0;  ///< not called, because what reads it was loaded
   double saved = 0;            ///< seconds that loaded calls once took
+  std::uint64_t kept = 0;      ///< bytes of results in the cache, loaded or put there
   double wall = 0;             ///< seconds in calls, added up over threads
   double cpu = 0;              ///< seconds of processor time
   std::vector<PortCount> in, out;

@@ -19,12 +19,12 @@ using testing::HasSubstr;
 class CacheTest : public testing::Test {
  protected:
   static Key key(int n) { return KeyMaker().add(std::to_string(n)).key(); }
-  void keep(int n, std::uint64_t bits = 7, const fs::path& written = {}) {
+  std::uint64_t keep(int n, std::uint64_t bits = 7, const fs::path& written = {}) {
     Cache::Result result;
     result.outputs = {Value::of(Mark{bits}), Value()};
     result.warnings = {"mind this"};
     result.seconds = 1.5;
-    cache_.store(key(n), {{"item", "u"}}, result, written);
+    return cache_.store(key(n), {{"item", "u"}}, result, written);
   }
   Cache::Result get(int n) { return cache_.load(key(n), join_, folder_.path() / "run"); }
   fs::path entry(int n) const {
@@ -48,9 +48,11 @@ class CacheTest : public testing::Test {
 
 TEST_F(CacheTest, GivesBackWhatItGot) {
   EXPECT_FALSE(cache_.has(key(1)));
-  keep(1);
+  const auto bytes = keep(1);
   ASSERT_TRUE(cache_.has(key(1)));
   const auto result = get(1);
+  EXPECT_EQ(bytes, fs::file_size(entry(1) / "0.h5"));
+  EXPECT_EQ(result.bytes, bytes);
   EXPECT_EQ(result.outputs.at(0).get<Mark>().bits, 7u);
   EXPECT_FALSE(result.outputs.at(1)) << "a nothing stays one";
   EXPECT_EQ(result.warnings, std::vector<std::string>{"mind this"});

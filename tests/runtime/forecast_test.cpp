@@ -81,6 +81,8 @@ TEST_P(CachedRun, TheSecondTimeNothingIsCalledThatWasKept) {
   EXPECT_EQ(stats(second, g, "last").loaded, 1u);
   for (const char* skipped : {"states", "second"}) EXPECT_EQ(stats(second, g, skipped).calls, 0u) << skipped;
   EXPECT_EQ(stats(second, g, "first").loaded, 10u) << "apply is not kept and reads it";
+  EXPECT_GT(stats(second, g, "first").kept, 0u);
+  EXPECT_EQ(stats(second, g, "first").kept, stats(first, g, "first").kept) << "as large as it was when it was made";
   EXPECT_EQ(stats(second, g, "first").calls, 0u);
 }
 
