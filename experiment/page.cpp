@@ -86,6 +86,8 @@ std::vector<OutputEstimates> by_output(const std::vector<Estimate>& estimates) {
 
 std::string joined(const std::string& a, const std::string& b) { return a.empty() ? b : b.empty() ? a : a + ", " + b; }
 
+double half_width(const Estimate& e) { return (e.high - e.low) / 2; }
+
 void sort_by_x(Series& series) {
   std::vector<std::size_t> order(series.x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -108,7 +110,7 @@ Panel line_panel(const Experiment& experiment, const OutputEstimates& estimates,
     if (e->measure != measure) continue;
     it->x.push_back(first_of(experiment, e->setting).levels[factor].get<double>());
     it->y.push_back(e->mean);
-    it->spread.push_back(e->half_width);
+    it->spread.push_back(half_width(*e));
   }
   for (auto& series : panel.series) sort_by_x(series);
   return panel;
@@ -118,25 +120,24 @@ BarPanel bar_panel(const Experiment& experiment, const OutputEstimates& estimate
   BarPanel panel{measure, {}};
   for (const auto* e : estimates.all)
     if (e->measure == measure)
-      panel.bars.push_back({joined(setting_text(experiment, e->setting), e->row), e->mean, e->half_width});
+      panel.bars.push_back({joined(setting_text(experiment, e->setting), e->row), e->mean, half_width(*e)});
   return panel;
 }
 
-/// What rounding left of a zero is shown as one; the files keep every digit.
-double shown_number(double v) { return std::abs(v) < 1e-12 ? 0 : v; }
-
 std::string number_text(const Estimate& e) {
-  const std::string text = std::isnan(e.half_width)
+  const bool of_table = e.over == Estimate::Over::table;
+  const std::string text = of_table || std::isnan(e.low)
                                ? fmt::format("{:.4g}", shown_number(e.mean))
-                               : fmt::format("{:.3g} ± {:.2g}", shown_number(e.mean), shown_number(e.half_width));
-  return e.partial ? text + " *" : text;
+                               : fmt::format("{:.3g} ± {:.2g}", shown_number(e.mean), shown_number(half_width(e)));
+  return text + (e.partial ? " *" : "") + html_below(of_table ? e.low : NAN, of_table ? e.high : NAN, e.p);
 }
 
 std::string score_table(const Experiment& experiment, const OutputEstimates& estimates) {
-  std::vector<std::string> head = experiment.factors;
+  std::vector<std::string> head;
   const bool rows =
       std::any_of(estimates.all.begin(), estimates.all.end(), [](const auto* e) { return !e->row.empty(); });
   if (rows) head.emplace_back("row");
+  head.insert(head.end(), experiment.factors.begin(), experiment.factors.end());
   head.insert(head.end(), estimates.measures.begin(), estimates.measures.end());
   std::vector<std::pair<std::size_t, std::string>> names;
   std::map<std::tuple<std::size_t, std::string, std::string>, const Estimate*> cells;
@@ -147,9 +148,9 @@ std::string score_table(const Experiment& experiment, const OutputEstimates& est
   std::vector<std::vector<std::string>> lines;
   for (const auto& [setting, row] : names) {
     auto& line = lines.emplace_back();
+    if (rows) line.push_back(text_cell(escape_markup(row)));
     for (const auto& level : first_of(experiment, setting).levels)
       line.push_back(text_cell(escape_markup(text_of(level))));
-    if (rows) line.push_back(text_cell(escape_markup(row)));
     for (const auto& measure : estimates.measures) {
       const auto it = cells.find({setting, row, measure});
       line.push_back(number_cell(it == cells.end() ? "–" : number_text(*it->second)));
@@ -158,18 +159,24 @@ std::string score_table(const Experiment& experiment, const OutputEstimates& est
   return html_table(estimates.output, head, lines);
 }
 
-/// Says what the numbers behind ± are.
+/// Says what the numbers behind ± and below the others are.
 std::string interval_note(const std::vector<Estimate>& estimates) {
   std::size_t repeats = 0, items = 0;
+  bool of_tables = false;
   for (const auto& e : estimates) {
-    auto& most = e.over_items ? items : repeats;
-    most = std::max(most, e.n);
+    if (e.over == Estimate::Over::items)
+      items = std::max(items, e.n);
+    else
+      repeats = std::max(repeats, e.n);
+    of_tables = of_tables || e.over == Estimate::Over::table || !std::isnan(e.p);
   }
-  std::string over;
+  std::string over, note;
   if (repeats > 1) over = fmt::format("{} repeats with seeds of their own", repeats);
   if (items > 1) over += fmt::format("{}{} items of one run", over.empty() ? "" : " or ", items);
-  if (over.empty()) return "One run of each setting: there are no confidence intervals.";
-  return fmt::format("Means over {}; after ± half the width of the 95 % confidence interval (Student's t).", over);
+  if (!over.empty())
+    note = fmt::format("Means over {}; after ± half the width of the 95 % confidence interval (Student's t). ", over);
+  if (of_tables) note += "Below a number stand the confidence interval and the p that the table of its run gives.";
+  return note.empty() ? "One run of each setting: there are no confidence intervals." : note;
 }
 
 std::string figure_of(const Shown& shown, const std::string& label, const std::string& folder) {

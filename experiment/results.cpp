@@ -4,11 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
+#include "nodes/report/page.h"
+#include "nodes/statistics/intervals.h"
 #include "nodes/types/report.h"
 #include "nodes/write/text.h"
 
@@ -30,12 +32,6 @@ void observe_table(const Table& table, const std::string& output, const std::str
         out.push_back({output, item, table.rows[r], table.columns[c], table.cells[r][c]});
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
-}
-
 /// The values of one row and measure of a setting: of each trial, one an item.
 using Sample = std::vector<std::vector<double>>;
 
@@ -43,17 +39,26 @@ Estimate estimate_of(const Sample& sample) {
   Estimate out;
   std::vector<double> means;
   for (const auto& trial : sample) means.push_back(mean_of(trial));
-  out.over_items = means.size() == 1 && sample[0].size() > 1;
-  const auto& values = out.over_items ? sample[0] : means;
+  if (means.size() == 1 && sample[0].size() > 1) out.over = Estimate::Over::items;
+  const auto& values = out.over == Estimate::Over::items ? sample[0] : means;
   out.n = values.size();
   out.mean = mean_of(values);
-  out.half_width = out.n > 1 ? confidence_half_width(values) : NAN;
+  const auto interval = student_interval(values, 0.95);
+  out.low = interval.low, out.high = interval.high;
   return out;
 }
 
-std::string csv_cell(const Json& cell) { return csv_text(cell.is_string() ? cell.get<std::string>() : cell.dump()); }
-
-std::string csv_line(const std::vector<std::string>& cells) { return fmt::format("{}\n", fmt::join(cells, ",")); }
+const char* over_text(Estimate::Over over) {
+  switch (over) {
+    case Estimate::Over::repeats:
+      return "repeats";
+    case Estimate::Over::items:
+      return "items";
+    case Estimate::Over::table:
+      return "table";
+  }
+  return "";
+}
 
 /// Calls f(trial, result, observation) for all that was observed.
 template <class F>
@@ -61,6 +66,49 @@ void for_each_observation(const Experiment& experiment, const std::vector<TrialR
   for (std::size_t t = 0; t < results.size(); ++t)
     for (const auto& o : results[t].observations) f(experiment.trials[t], results[t], o);
 }
+
+/// Setting, output, row, measure.
+using Name = std::tuple<std::size_t, std::string, std::string, std::string>;
+
+struct Samples {
+  std::map<Name, Sample> all;
+  std::vector<Name> names;  ///< in the order in which they came, without what stands beside a measure
+};
+
+Samples gather(const Experiment& experiment, const std::vector<TrialResult>& results) {
+  Samples out;
+  std::map<Name, const Trial*> last;
+  std::set<std::pair<std::string, std::string>> measures;
+  for_each_observation(experiment, results, [&](const Trial&, const TrialResult&, const Observation& o) {
+    measures.insert({o.output, o.measure});
+  });
+  const auto is_beside = [&](const Observation& o) {
+    const std::string score = score_beside(o.measure);
+    return !score.empty() && measures.contains({o.output, score});
+  };
+  for_each_observation(experiment, results, [&](const Trial& trial, const TrialResult&, const Observation& o) {
+    const Name name{trial.setting, o.output, o.row, o.measure};
+    auto& sample = out.all[name];
+    if (sample.empty() && !is_beside(o)) out.names.push_back(name);
+    if (sample.empty() || last[name] != &trial) sample.emplace_back();
+    last[name] = &trial;
+    sample.back().push_back(o.value);
+  });
+  return out;
+}
+
+void take_from_table(Estimate& e, const std::map<Name, Sample>& samples) {
+  const auto beside = [&](const char* what) {
+    const auto it = samples.find({e.setting, e.output, e.row, e.measure + what});
+    return it == samples.end() ? NAN : it->second[0][0];
+  };
+  e.low = beside(" low"), e.high = beside(" high"), e.p = beside(" p");
+  if (!std::isnan(e.low)) e.over = Estimate::Over::table;
+}
+
+std::string csv_cell(const Json& cell) { return csv_text(cell.is_string() ? cell.get<std::string>() : cell.dump()); }
+
+std::string csv_line(const std::vector<std::string>& cells) { return fmt::format("{}\n", fmt::join(cells, ",")); }
 
 }  // namespace
 
@@ -100,41 +148,17 @@ std::vector<Shown> pick_shown(const Experiment& experiment, const RunResult& run
   return out;
 }
 
-double confidence_half_width(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  const double mean = mean_of(values);
-  double squares = 0;
-  for (const double v : values) squares += (v - mean) * (v - mean);
-  const double t = boost::math::quantile(boost::math::students_t(n - 1), 0.975);
-  return t * std::sqrt(squares / (n - 1) / n);
-}
-
 std::vector<Estimate> estimate(const Experiment& experiment, const std::vector<TrialResult>& results) {
-  using Name = std::tuple<std::size_t, std::string, std::string, std::string>;
-  std::map<Name, Sample> samples;
-  std::map<Name, std::size_t> last;
-  std::vector<Name> order;
-  std::size_t trial = 0;
-  for (const auto& result : results) {
-    for (const auto& o : result.observations) {
-      if (o.measure.ends_with(" std")) continue;
-      const Name name{experiment.trials[trial].setting, o.output, o.row, o.measure};
-      auto& sample = samples[name];
-      if (sample.empty()) order.push_back(name);
-      if (sample.empty() || last[name] != trial) sample.emplace_back();
-      last[name] = trial;
-      sample.back().push_back(o.value);
-    }
-    ++trial;
-  }
+  const auto [samples, names] = gather(experiment, results);
   std::vector<bool> partial(experiment.settings);
   for (std::size_t t = 0; t < results.size(); ++t)
     if (results[t].failures > 0) partial[experiment.trials[t].setting] = true;
   std::vector<Estimate> out;
-  for (const auto& name : order) {
-    Estimate& e = out.emplace_back(estimate_of(samples[name]));
+  for (const auto& name : names) {
+    Estimate& e = out.emplace_back(estimate_of(samples.at(name)));
     std::tie(e.setting, e.output, e.row, e.measure) = name;
     e.partial = partial[e.setting];
+    if (e.n == 1) take_from_table(e, samples);
   }
   return out;
 }
@@ -175,7 +199,7 @@ Json tidy_json(const Experiment& experiment, const std::vector<TrialResult>& res
 std::string estimates_csv(const Experiment& experiment, const std::vector<Estimate>& estimates) {
   std::vector<std::string> head;
   for (const auto& factor : experiment.factors) head.push_back(csv_text(factor));
-  for (const char* more : {"output", "row", "measure", "n", "over", "partial", "mean", "low", "high"})
+  for (const char* more : {"output", "row", "measure", "n", "over", "partial", "mean", "low", "high", "p"})
     head.emplace_back(more);
   std::string out = csv_line(head);
   std::vector<const Trial*> of_setting(experiment.settings);
@@ -185,12 +209,9 @@ std::string estimates_csv(const Experiment& experiment, const std::vector<Estima
     for (const auto& level : of_setting[e.setting]->levels) line.push_back(csv_cell(level));
     for (const auto* text : {&e.output, &e.row, &e.measure}) line.push_back(csv_text(*text));
     line.push_back(fmt::format("{}", e.n));
-    line.emplace_back(e.over_items ? "items" : "repeats");
+    line.emplace_back(over_text(e.over));
     line.emplace_back(e.partial ? "yes" : "no");
-    line.push_back(fmt::format("{}", e.mean));
-    const bool single = std::isnan(e.half_width);
-    line.push_back(single ? "" : fmt::format("{}", e.mean - e.half_width));
-    line.push_back(single ? "" : fmt::format("{}", e.mean + e.half_width));
+    for (const double v : {e.mean, e.low, e.high, e.p}) line.push_back(std::isnan(v) ? "" : fmt::format("{}", v));
     out += csv_line(line);
   }
   return out;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -44,28 +45,28 @@ std::vector<Observation> observe(const Experiment& experiment, const RunResult& 
 std::vector<Shown> pick_shown(const Experiment& experiment, const RunResult& run);
 
 /// A mean over repeats, with its 95 % confidence interval by Student's t; where there is one trial only, over the items
-/// of a stream.
+/// of a stream. A single number of a table has the interval and the p that the table has of it ("acc low", "acc high",
+/// "acc p").
 struct Estimate {
+  enum class Over { repeats, items, table };
   std::size_t setting = 0;
   std::string output, row, measure;
-  std::size_t n = 0;        ///< numbers that the mean is of
-  bool over_items = false;  ///< not repeats
-  bool partial = false;     ///< some items of the trials failed
+  std::size_t n = 0;          ///< numbers that the mean is of
+  Over over = Over::repeats;  ///< what the interval is over
+  bool partial = false;       ///< some items of the trials failed
   double mean = 0;
-  double half_width = 0;  ///< of the interval; NaN for a single number
+  double low = NAN, high = NAN;  ///< ends of the interval; NaN where there is none
+  double p = NAN;                ///< of a test; NaN where there is none
 };
 
-/// By setting, output, row, measure, in the order in which they came. Standard deviations that stand beside a measure
-/// ("acc std") are left out.
+/// By setting, output, row, measure, in the order in which they came. What stands beside a measure of its output
+/// ("acc std", "acc low") is no measure of its own.
 std::vector<Estimate> estimate(const Experiment& experiment, const std::vector<TrialResult>& results);
-
-/// Half the width of the 95 % confidence interval of the mean of n >= 2 numbers.
-double confidence_half_width(const std::vector<double>& values);
 
 /// One line a number: trial, factors, seed, status, output, item, row, measure, value.
 std::string tidy_csv(const Experiment& experiment, const std::vector<TrialResult>& results);
 Json tidy_json(const Experiment& experiment, const std::vector<TrialResult>& results);
-/// One line an estimate: factors, output, row, measure, n, over, partial, mean, low, high.
+/// One line an estimate: factors, output, row, measure, n, over, partial, mean, low, high, p.
 std::string estimates_csv(const Experiment& experiment, const std::vector<Estimate>& estimates);
 
 }  // namespace talkgraph

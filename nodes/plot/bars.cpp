@@ -38,7 +38,7 @@ Plot PlotBars::operator()(const Table& table) const {
 }
 
 void describe(Description<PlotBars>& d) {
-  d.type("plot.bars").summary("columns of a table as bars, with whiskers of one standard deviation");
+  d.type("plot.bars").version(2).summary("columns of a table as bars, with whiskers of one standard deviation");
   d.input("table", "as evaluate.compare gives it").output("plot", "a panel a column");
   d.param("columns", &PlotBars::columns).doc("which, a panel each");
 }

@@ -12,7 +12,7 @@ namespace talkgraph {
 namespace {
 
 constexpr double kLeft = 54, kRight = 14, kTop = 28, kBottom = 42, kLegend = 28;
-constexpr double kBarHeight = 24, kCharacter = 6.3, kValue = 56;
+constexpr double kBarHeight = 24, kCharacter = 6.3, kValue = 64;
 
 /// Of the whisker at a point, or 0.
 double spread_at(const Series& s, std::size_t i) {
@@ -140,11 +140,6 @@ Axis axis_of(const BarPanel& panel) {
   return axis_over(low, high, 4);
 }
 
-/// Whole numbers stay whole: counts of thousands are read digit by digit.
-std::string value_text(double value) {
-  return std::abs(value) >= 1000 && std::abs(value) < 1e6 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
-}
-
 std::string draw_bar(const Bar& bar, const Axis& axis, double w, double y) {
   const double middle = y + kBarHeight / 2;
   std::string out = svg_text(-8, middle + 4, "end", bar.name);
@@ -157,7 +152,7 @@ std::string draw_bar(const Bar& bar, const Axis& axis, double w, double y) {
         fmt::format("M{0:.1f} {2:.1f}H{1:.1f}M{0:.1f} {3:.1f}v6M{1:.1f} {3:.1f}v6",
                     axis.share(bar.value - bar.spread) * w, axis.share(bar.value + bar.spread) * w, middle, middle - 3),
         plot_colours[0]);
-  return out + svg_text(w + kValue - 4, middle + 4, "end", value_text(bar.value));
+  return out + svg_text(w + kValue - 4, middle + 4, "end", fmt::format("{:.4g}", shown_number(bar.value)));
 }
 
 std::string draw_bar_panel(const BarPanel& panel, double w) {
@@ -178,6 +173,8 @@ std::string draw_bar_panel(const BarPanel& panel, double w) {
 }
 
 }  // namespace
+
+double shown_number(double value) { return std::abs(value) < 1e-12 ? 0 : value; }
 
 std::string escape_markup(const std::string& text) {
   std::string out;

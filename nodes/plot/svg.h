@@ -44,6 +44,9 @@ struct BarPanel {
 };
 std::string draw_bars(const std::string& title, const std::vector<BarPanel>& panels, int columns = 2);
 
+/// What rounding left of a zero is shown as one; the files keep every digit.
+double shown_number(double value);
+
 /// Text made safe for SVG and HTML.
 std::string escape_markup(const std::string& text);
 

@@ -16,14 +16,18 @@ constexpr const char* kStyle = R"(
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; }
 h1, h2 { line-height: 1.2; }
 .wide { overflow-x: auto; }
+main > .wide { margin-right: min(0px, 50% - 50vw + 1rem); }
 table { border-collapse: collapse; margin: 1rem 0 2rem; }
 caption { text-align: left; font-weight: 600; padding-bottom: .3rem; }
 th, td { padding: .3rem .7rem; border-bottom: 1px solid #ddd; text-align: right; font-variant-numeric: tabular-nums; }
 th:first-child { text-align: left; }
 td { white-space: nowrap; }
-.text { text-align: left; white-space: normal; }
+td small { color: #444; }
+.text, tbody th { text-align: left; white-space: normal; }
 tbody th { font-weight: normal; }
+tr { background: #fff; }
 tbody tr:hover { background: #f4f4f4; }
+tr > :first-child { position: sticky; left: 0; background: inherit; min-width: 12rem; }
 svg { max-width: 100%; height: auto; }
 .clips { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(24rem, 100%), 1fr)); gap: 1rem; }
 figure { margin: 0 0 1.5rem; }
@@ -39,28 +43,22 @@ std::ptrdiff_t column_of(const Table& table, const std::string& name) {
   return it == table.columns.end() ? -1 : it - table.columns.begin();
 }
 
-/// Whether column c is shown in the cells of another: its deviations, the ends of its intervals.
+/// Whether column c is shown in the cells of another.
 bool is_beside_another(const Table& table, std::size_t c) {
-  const std::string& name = table.columns[c];
-  for (const std::string_view what : {" std", " low", " high"})
-    if (name.ends_with(what) && column_of(table, name.substr(0, name.size() - what.size())) >= 0) return true;
-  return false;
+  const std::string score = score_beside(table.columns[c]);
+  return !score.empty() && column_of(table, score) >= 0;
 }
 
-/// What rounding left of a zero is shown as one; the files keep every digit.
-double shown(double value) { return std::abs(value) < 1e-12 ? 0 : value; }
-
 std::string cell(const Table& table, std::size_t row, std::size_t c) {
-  const double value = shown(table.cells[row][c]);
+  const double value = shown_number(table.cells[row][c]);
   if (std::isnan(value)) return "<td>–</td>";
   const auto beside = [&](const char* what) {
     const auto column = column_of(table, table.columns[c] + what);
-    return column < 0 ? NAN : shown(table.cells[row][static_cast<std::size_t>(column)]);
+    return column < 0 ? NAN : table.cells[row][static_cast<std::size_t>(column)];
   };
-  const double spread = beside(" std"), low = beside(" low"), high = beside(" high");
-  std::string text = "<td>" + (std::isnan(spread) ? number(value) : fmt::format("{:.3g} ± {:.2g}", value, spread));
-  if (!std::isnan(low)) text += fmt::format("<br><small>{:.3g} to {:.3g}</small>", low, high);
-  return text + "</td>";
+  const double spread = shown_number(beside(" std"));
+  return "<td>" + (std::isnan(spread) ? number(value) : fmt::format("{:.3g} ± {:.2g}", value, spread)) +
+         html_below(beside(" low"), beside(" high"), beside(" p")) + "</td>";
 }
 
 /// A relative path as a URL: what is no letter, digit or one of "-._~/" is written as %XX.
@@ -97,6 +95,20 @@ std::string html_open(const std::string& title, const std::string& notes) {
 }
 
 std::string html_close() { return "</main>\n</body>\n</html>\n"; }
+
+std::string score_beside(const std::string& column) {
+  for (const std::string_view what : {" std", " low", " high", " p"})
+    if (column.ends_with(what)) return column.substr(0, column.size() - what.size());
+  return "";
+}
+
+std::string html_below(double low, double high, double p) {
+  std::string out;
+  if (!std::isnan(low))
+    out += fmt::format("<br><small>{:.3g} to {:.3g}</small>", shown_number(low), shown_number(high));
+  if (!std::isnan(p)) out += fmt::format("<br><small>p = {:.2g}</small>", p);
+  return out;
+}
 
 std::string html_table(const std::string& name, const Table& table) {
   std::string out =

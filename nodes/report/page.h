@@ -12,7 +12,13 @@ namespace talkgraph {
 std::string html_open(const std::string& title, const std::string& notes);
 std::string html_close();
 
-/// A table with its title as caption; a column and its "NAME std" share cells, "0.59 ± 0.08".
+/// The score that a column says more of: "acc" of "acc std", "acc low", "acc high" and "acc p"; empty of any other
+/// name.
+std::string score_beside(const std::string& column);
+/// What stands below a number in its cell: an interval, and p of a test; NaN leaves either out.
+std::string html_below(double low, double high, double p);
+/// A table with its title as caption; a column shares its cells with those that say more of it: "0.59 ± 0.08", and the
+/// interval and p below.
 std::string html_table(const std::string& name, const Table& table);
 /// A table of cells, which the two below make of HTML; a heading stands where the cells below it do.
 std::string html_table(const std::string& caption, const std::vector<std::string>& head,

@@ -40,14 +40,6 @@ TrialResult result_of(std::vector<Observation> observations) {
   return r;
 }
 
-TEST(Results, IntervalIsStudents) {
-  // Mean 3, standard deviation sqrt(2.5), t of 4 degrees of freedom 2.7764451052.
-  EXPECT_NEAR(confidence_half_width({1, 2, 3, 4, 5}), 2.7764451051977987 * std::sqrt(2.5 / 5), 1e-12);
-  // Two numbers: t of one degree is 12.706204736.
-  EXPECT_NEAR(confidence_half_width({0, 2}), 12.706204736432095, 1e-9);
-  EXPECT_EQ(confidence_half_width({7, 7, 7}), 0);
-}
-
 TEST(Results, AreObservedFromTablesAndScores) {
   Experiment e;
   e.tabulate.names = {"table", "each"};
@@ -73,11 +65,13 @@ TEST(Results, MeansAreOverRepeats) {
   ASSERT_EQ(estimates.size(), 2u);
   EXPECT_EQ(estimates[0].mean, 2);
   EXPECT_EQ(estimates[0].n, 2u);
-  EXPECT_FALSE(estimates[0].over_items);
-  EXPECT_NEAR(estimates[0].half_width, 12.706204736432095, 1e-9);
+  EXPECT_EQ(estimates[0].over, Estimate::Over::repeats);
+  // Student's t of one degree of freedom is 12.706204736.
+  EXPECT_NEAR(estimates[0].low, 2 - 12.706204736432095, 1e-9);
+  EXPECT_NEAR(estimates[0].high, 2 + 12.706204736432095, 1e-9);
   EXPECT_EQ(estimates[1].setting, 1u);
   EXPECT_EQ(estimates[1].mean, 10);
-  EXPECT_TRUE(std::isnan(estimates[1].half_width));
+  EXPECT_TRUE(std::isnan(estimates[1].low));
 }
 
 TEST(Results, ItemsOfARepeatAreAveragedFirst) {
@@ -88,7 +82,7 @@ TEST(Results, ItemsOfARepeatAreAveragedFirst) {
   ASSERT_EQ(estimates.size(), 2u);
   EXPECT_EQ(estimates[0].mean, 3.5);
   EXPECT_EQ(estimates[0].n, 2u);
-  EXPECT_TRUE(estimates[1].over_items);
+  EXPECT_EQ(estimates[1].over, Estimate::Over::items);
   EXPECT_EQ(estimates[1].n, 2u);
 }
 
@@ -105,7 +99,37 @@ TEST(Results, TidyTableHasALineANumber) {
   EXPECT_EQ(json[0]["value"], 0.25);
   EXPECT_TRUE(json[1]["value"].is_null());
   EXPECT_EQ(estimates_csv(e, estimate(e, {results[0]})),
-            "filters,output,row,measure,n,over,partial,mean,low,high\n20,scores,\"a, b\",acc,1,repeats,no,0.25,,\n");
+            "filters,output,row,measure,n,over,partial,mean,low,high,p\n20,scores,\"a, b\",acc,1,repeats,no,0.25,,,\n");
+}
+
+TEST(Results, IntervalsOfATableStayWithTheirScores) {
+  const auto e = two_settings();
+  const auto table = result_of({{"scores", "", "ours", "acc", 0.5},
+                                {"scores", "", "ours", "acc std", 0.3},
+                                {"scores", "", "ours", "acc low", 0.25},
+                                {"scores", "", "ours", "acc high", 0.75},
+                                {"scores", "", "ours", "acc p", 0.0125},
+                                {"scores", "", "ours", "so low", 7},
+                                {"scores", "", "mean", "acc", 0}});
+  const std::vector<TrialResult> results = {table, {}, {}, {}};
+  const auto estimates = estimate(e, results);
+  ASSERT_EQ(estimates.size(), 3u);
+  EXPECT_EQ(estimates[0].low, 0.25);
+  EXPECT_EQ(estimates[0].high, 0.75);
+  EXPECT_EQ(estimates[0].p, 0.0125);
+  EXPECT_TRUE(std::isnan(estimates[2].low));
+  EXPECT_THAT(estimates_csv(e, estimates), HasSubstr("20,scores,ours,acc,1,table,no,0.5,0.25,0.75,0.0125\n"));
+  const auto page = html_results(e, results, "");
+  EXPECT_THAT(page, HasSubstr("<th scope=\"col\">acc</th><th scope=\"col\">so low</th></tr>"));
+  EXPECT_THAT(page, HasSubstr("<td>0.5<br><small>0.25 to 0.75</small><br><small>p = 0.013</small></td><td>7</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>0</td><td>–</td>"));
+  EXPECT_THAT(page, Not(HasSubstr("no confidence intervals")));
+  EXPECT_THAT(tidy_csv(e, results), HasSubstr(",acc low,0.25\n")) << "all numbers";
+
+  const auto repeated = estimate(e, {table, table, {}, {}});
+  EXPECT_EQ(repeated[0].over, Estimate::Over::repeats);
+  EXPECT_EQ(repeated[0].low, 0.5) << "no interval within a run";
+  EXPECT_TRUE(std::isnan(repeated[0].p));
 }
 
 TEST(Results, PlotsAreLinesOverANumberAndBarsElse) {

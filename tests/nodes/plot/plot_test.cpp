@@ -72,6 +72,9 @@ TEST(Bars, EndWhereTheirValuesAre) {
   EXPECT_THAT(draw_bars("", {{"labels", {{"phones", 1163, NAN}, {"frames", 3.2e6, NAN}}}}),
               AllOf(HasSubstr(">1163<"), HasSubstr(">3.2e+06<")));
   EXPECT_THAT(draw_bars("", {}), HasSubstr("</svg>"));
+  const std::string plain = draw_bars("", {{"frames", {{"a", 1163, NAN}, {"b", 7e-33, NAN}}}});
+  EXPECT_THAT(plain, HasSubstr(">1163</text>"));
+  EXPECT_THAT(plain, Not(HasSubstr("e-33")));
 }
 
 TEST(PlotBars, DrawsColumnsOfATable) {
