@@ -62,14 +62,14 @@ Table ContextPerplexity::operator()(const Vlmm& vlmm, const Collected<FrameLabel
   const double entropy = bits / symbols;
   return {"Perplexity of phonetic contexts",
           "streams",
-          {"perplexity", "entropy", "best_path", "missed", "symbols", "memories", "labels"},
+          {"perplexity", "entropy", "best_path", "missed", "symbols", "memories", "trainable"},
           {"all"},
           {{std::exp2(entropy), entropy, best / symbols, missed / symbols, symbols,
             static_cast<double>(vlmm.states.size()), static_cast<double>(vlmm.windows.size())}}};
 }
 
 void describe(Description<ContextPerplexity>& d) {
-  d.type("context.perplexity").version(2).summary("how well the contexts predict other phone streams");
+  d.type("context.perplexity").version(3).summary("how well the contexts predict other phone streams");
   d.source("Thesis §5.2.2, Eqns 5.25 to 5.27");
   d.input("vlmm", "the contexts").input("labels", "phones at the video rate").output("table", "one row");
   d.param("floor", &ContextPerplexity::floor).within(1e-12, 1).doc("least probability of a phone");

@@ -15,7 +15,7 @@ namespace talkgraph {
 ///               memory; from there on the automaton is deterministic, and each beginning is one path
 ///   missed      share of the symbols for which there was no transition
 ///   symbols     N: frames, or runs, as the model was trained on; pauses at an end do not count
-///   memories, labels  of the model: kept memories, trainable labels
+///   memories, trainable  of the model: kept memories, labels that have a state of their own
 /// Throws std::runtime_error if there is no symbol.
 struct ContextPerplexity {
   double floor = 1e-4;  ///< least probability: what an unseen phone or transition counts

@@ -8,6 +8,7 @@
 #include "graph/random.h"
 #include "nodes/context/automaton.h"
 #include "nodes/context/decode.h"
+#include "nodes/context/inspect.h"
 #include "nodes/context/perplexity.h"
 #include "nodes/context/segment.h"
 #include "nodes/context/train.h"
@@ -482,6 +483,18 @@ TEST(ContextPerplexity, IsThatOfTheTransitions) {
   EXPECT_DOUBLE_EQ(score("baba", "entropy"), 0.75);   // 1 + 1 + 0 + 1
   EXPECT_DOUBLE_EQ(score("baba", "best_path"), 0.5);  // begun in a: 0 + 1 + 0 + 1
   EXPECT_THROW(ContextPerplexity{}(v, {}), std::runtime_error);
+}
+
+TEST(ContextPerplexity, CountsTheLabelsThatTheSummaryCallsTrainable) {
+  const Collected<FrameLabels> labels{{"x", stream("abcabcabcabcabcaab")}};
+  const Vlmm v = ContextTrain{.keep = 1e-9, .min_windows = 100}(labels);
+  const auto column = [](const Table& t, const std::string& name) {
+    return t.cells[0].at(
+        static_cast<std::size_t>(std::find(t.columns.begin(), t.columns.end(), name) - t.columns.begin()));
+  };
+  const Table held_out = ContextPerplexity{}(v, labels), summary = InspectContexts{}(v).summary;
+  EXPECT_EQ(column(held_out, "trainable"), column(summary, "trainable"));
+  EXPECT_LT(column(summary, "trainable"), column(summary, "labels"));
 }
 
 }  // namespace
