@@ -148,7 +148,8 @@ Resegment::Out Resegment::operator()(const Ssgpdm& model, const FrameLabels& lab
       label = runs[run].symbol;
     }
   const double n = static_cast<double>(frames);
-  out.scores.values = {{"log_likelihood", search.best() / n}, {"before", search.before() / n}, {"moved", moved / n}};
+  out.scores.values = {{"log_likelihood", search.best() / n}, {"moved", moved / n}};
+  if (std::isfinite(search.before())) out.scores.values["before"] = search.before() / n;
   return out;
 }
 
@@ -162,7 +163,8 @@ void describe(Description<Resegment>& d) {
       .input("visual", "visual parameters at that rate; without them the sound alone counts");
   d.output("labels", &Resegment::Out::labels, "the same phones in the same order");
   d.output("scores", &Resegment::Out::scores,
-           "log_likelihood a frame, before: that of the labels given, moved: the share of frames that changed");
+           "log_likelihood a frame, before: that of the labels given if it is finite, moved: the share of frames that "
+           "changed");
   d.param("reach", &Resegment::reach).at_least(0).unit("frames").doc("a boundary moves by no more");
   d.param("iterations", &Resegment::iterations)
       .at_least(0)

@@ -23,7 +23,9 @@ namespace talkgraph {
 struct Resegment {
   struct Out {
     FrameLabels labels;
-    Scores scores;  ///< "log_likelihood" a frame, "before" of the labels given, "moved", the share of frames relabelled
+    /// "log_likelihood" a frame; "before", that of the labels given, if it is finite; "moved", the share of frames
+    /// relabelled.
+    Scores scores;
   };
   int reach = 2;
   int iterations = 3;

@@ -82,6 +82,20 @@ TEST(Resegment, FindsTheBoundariesThatMoved) {
   }
 }
 
+// A phone whose sound is so far away that no other one can have made it.
+TEST(Resegment, DoesNotSayALikelihoodBeforeThatIsNotFinite) {
+  constexpr double far = 1e160;
+  Ssgpdm distant = model();
+  distant.states.at("b").audio.mean.array() += far;
+  Utterance u = utterance("aaabbb", 93);
+  u.audio.values.bottomRows(3).array() += far;
+  Context context;
+  const auto out = Resegment{}(distant, labels_of("aaaabb"), u.audio, &u.visual, context);
+  EXPECT_EQ(str(out.labels), "aaabbb");
+  EXPECT_TRUE(std::isfinite(out.scores.values.at("log_likelihood")));
+  EXPECT_FALSE(out.scores.values.contains("before"));
+}
+
 TEST(Resegment, MovesNoBoundaryFurtherThanItsReach) {
   const Utterance u = utterance(truth, 98);
   Context context;
