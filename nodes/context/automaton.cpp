@@ -1,6 +1,9 @@
 #include "nodes/context/automaton.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <stdexcept>
 
 #include "nodes/types/visemes.h"
 
@@ -18,6 +21,11 @@ std::vector<Unit> units(const std::vector<std::string>& symbols, bool runs) {
 }
 
 std::vector<std::string> symbols(std::vector<std::string> phones, bool visemes) {
+  for (std::size_t t = 0; t < phones.size(); ++t)
+    if (phones[t].empty() || phones[t].find('-') != std::string::npos)
+      throw std::runtime_error(
+          fmt::format("frame {}: \"{}\" cannot be a phone: name it without '-', which joins the phones of a context", t,
+                      phones[t]));
   if (visemes)
     for (auto& phone : phones)
       if (!is_end_pause(phone)) phone = viseme_label(phone).value_or(phone);

@@ -17,7 +17,8 @@ struct Unit {
 /// an end (is_end_pause) is always one.
 std::vector<Unit> units(const std::vector<std::string>& symbols, bool runs);
 
-/// The phones of frames, or their visemes; pauses at an end and what is no phone stay as they are.
+/// The phones of frames, or their visemes; pauses at an end and what has no viseme stay as they are. Throws
+/// std::runtime_error if a name is empty or holds '-'.
 std::vector<std::string> symbols(std::vector<std::string> phones, bool visemes);
 
 /// A stream of phones as a model reads it.

@@ -108,8 +108,6 @@ void check(const std::set<std::string>& phones, bool visemes) {
   if (phones.empty())
     throw std::runtime_error("contexts cannot be learnt from no frame: is the training selection empty?");
   for (const auto& phone : phones) {
-    if (phone.empty() || phone.find('-') != std::string::npos)
-      throw std::runtime_error("\"" + phone + "\" cannot be a phone: '-' joins the phones of a context");
     if (visemes && !is_phone(phone))
       throw std::runtime_error("\"" + phone + "\" is neither a CMU nor a BEEP phone, so it has no viseme");
   }

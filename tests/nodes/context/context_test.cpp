@@ -439,6 +439,12 @@ TEST(ContextTrain, RefusesLabelsThatCannotBeJoined) {
   EXPECT_THROW(ContextTrain{}({{"x", {{""}, Rational(25)}}}), std::runtime_error);
 }
 
+TEST(ContextDecode, RefusesLabelsThatCannotBeJoined) {
+  const Vlmm v = ContextTrain{}({{"x", stream("abab")}});
+  for (const char* label : {"", "a-b"})
+    EXPECT_THROW(ContextDecode{}(v, {{"a", label, "b"}, Rational(25)}), std::runtime_error) << label;
+}
+
 // "aabbb" is "ab" to a model of runs: contexts and windows hold whole runs.
 TEST(ContextRuns, StandForTheirFrames) {
   const Collected<FrameLabels> labels{{"x", stream("aabbbaab")}};
