@@ -33,10 +33,12 @@ void fields(Archive& ar, RidgeModel& m) {
 
 void fields(Archive& ar, NeighboursModel& m) {
   ar("inputs", m.inputs);
+  ar("weights", m.weights);
   ar("audio", m.audio);
   ar("visual", m.visual);
   if (!ar.loading()) return;
   const StoredModel stored("nearest neighbours");
+  stored.matrix("weights", m.weights, 1, stacked_size(m.inputs));
   stored.matrix("audio", m.audio, m.audio.rows(), stacked_size(m.inputs));
   stored.matrix("visual", m.visual, m.audio.rows(), m.visual.cols());
 }

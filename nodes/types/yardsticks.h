@@ -38,11 +38,12 @@ void fields(Archive& ar, RidgeModel& m);
 /// All training frames, to look neighbours up in.
 struct NeighboursModel {
   StackedInputs inputs;
-  Eigen::MatrixXd audio;   ///< N × stacked audio, z-scored
-  Eigen::MatrixXd visual;  ///< N × visual
+  Eigen::RowVectorXd weights;  ///< of the columns of stacked audio
+  Eigen::MatrixXd audio;       ///< N × stacked audio, z-scored and weighted
+  Eigen::MatrixXd visual;      ///< N × visual
 };
 template <>
-inline constexpr PortType port_type<NeighboursModel>{"NeighboursModel", 1};
+inline constexpr PortType port_type<NeighboursModel>{"NeighboursModel", 2};
 void fields(Archive& ar, NeighboursModel& m);
 
 /// The mean trajectory of each state's training windows.

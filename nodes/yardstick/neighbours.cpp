@@ -1,20 +1,35 @@
 #include "nodes/yardstick/neighbours.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "nodes/yardstick/stacked.h"
 
 namespace talkgraph {
+namespace {
+
+/// What each column of ±`context` neighbours is multiplied by, so that squared distances weigh them.
+Eigen::RowVectorXd column_weights(int context, double width, Eigen::Index dimension) {
+  Eigen::RowVectorXd out = Eigen::RowVectorXd::Ones(dimension * (2 * context + 1));
+  if (width > 0)
+    for (int l = -context; l <= context; ++l)
+      out.segment((l + context) * dimension, dimension).setConstant(std::exp(-0.5 * std::pow(l / width, 2)));
+  return out;
+}
+
+}  // namespace
 
 NeighboursModel NeighboursTrain::operator()(const Collected<Track>& audio, const Collected<Track>& visual) const {
   auto training = stack_training(audio, visual, context, scale);
-  return {std::move(training.inputs), std::move(training.audio), std::move(training.visual)};
+  const Eigen::RowVectorXd weights = column_weights(context, width, training.inputs.mean.size());
+  training.audio.array().rowwise() *= weights.array();
+  return {std::move(training.inputs), weights, std::move(training.audio), std::move(training.visual)};
 }
 
 Track NeighboursPredict::operator()(const NeighboursModel& model, const Track& audio) const {
-  const Eigen::MatrixXd query = stacked(model.inputs, audio);
+  const Eigen::MatrixXd query = stacked(model.inputs, audio).array().rowwise() * model.weights.array();
   // |q - a|² less |q|², which does not change the order.
   Eigen::MatrixXd distance = -2 * model.audio * query.transpose();
   distance.colwise() += model.audio.rowwise().squaredNorm();
@@ -37,11 +52,16 @@ Track NeighboursPredict::operator()(const NeighboursModel& model, const Track& a
 }
 
 void describe(Description<NeighboursTrain>& d) {
-  d.type("yardstick.neighbours_train").version(2).summary("keeps all training frames to look neighbours up in");
+  d.type("yardstick.neighbours_train").version(3).summary("keeps all training frames to look neighbours up in");
   d.input("audio", "speech features at the video rate of the training sequences")
       .input("visual", "visual parameters of the training sequences")
       .output("model", "the training frames");
   d.param("context", &NeighboursTrain::context).within(0, 50).unit("frames").doc("neighbours on each side");
+  d.param("width", &NeighboursTrain::width)
+      .at_least(0)
+      .unit("frames")
+      .doc(
+          "of the window exp(-(l / width)^2) by which the l-th neighbour weighs in squared distances; 0: all the same");
   d.param("scale", &NeighboursTrain::scale)
       .doc("brings every dimension of the sound to deviation 1; else they are compared as they are");
 }

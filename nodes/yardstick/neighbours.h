@@ -6,10 +6,12 @@
 
 namespace talkgraph {
 
-/// Keeps all training frames: z-scored audio with ±`context` neighbours. Without `scale` distances are of audio as it
-/// is, such as z-scored features joined to weighted indicators of phones.
+/// Keeps all training frames: z-scored audio with ±`context` neighbours, of which the l-th weighs exp(−(l / `width`)²)
+/// in squared distances, or 1 where the width is 0. Without `scale` distances are of audio as it is, such as z-scored
+/// features joined to weighted indicators of phones.
 struct NeighboursTrain {
   int context = 5;
+  double width = 0;
   bool scale = true;
 
   NeighboursModel operator()(const Collected<Track>& audio, const Collected<Track>& visual) const;

@@ -55,24 +55,28 @@ TEST(Ridge, SurvivesConstantColumnsAndOneFrame) {
 TEST(Neighbours, AgreesWithASearchFrameByFrame) {
   const Eigen::MatrixXd a = Eigen::MatrixXd::Random(60, 2), v = Eigen::MatrixXd::Random(60, 3),
                         q = Eigen::MatrixXd::Random(9, 2);
-  const auto model = NeighboursTrain{1}({{"x", track(a)}}, {{"x", track(v)}});
-  const Track p = NeighboursPredict{3}(model, track(q));
   const Eigen::RowVectorXd mean = a.colwise().mean();
   const auto z = [&](const Eigen::MatrixXd& m, Eigen::Index t, int d) {
     const double deviation = std::sqrt((a.col(d).array() - mean[d]).square().mean());
     return (m(std::clamp<Eigen::Index>(t, 0, m.rows() - 1), d) - mean[d]) / deviation;
   };
-  for (Eigen::Index t = 0; t < 9; ++t) {
-    std::vector<std::pair<double, Eigen::Index>> order;
-    for (Eigen::Index s = 0; s < 60; ++s) {
-      double sum = 0;
-      for (int i = -1; i <= 1; ++i)
-        for (int d = 0; d < 2; ++d) sum += std::pow(z(q, t + i, d) - z(a, s + i, d), 2);
-      order.emplace_back(sum, s);
+  for (const double width : {0.0, 0.8}) {
+    const auto model = NeighboursTrain{1, width}({{"x", track(a)}}, {{"x", track(v)}});
+    const Track p = NeighboursPredict{3}(model, track(q));
+    const double beside = width > 0 ? std::exp(-1 / (width * width)) : 1;
+    for (Eigen::Index t = 0; t < 9; ++t) {
+      std::vector<std::pair<double, Eigen::Index>> order;
+      for (Eigen::Index s = 0; s < 60; ++s) {
+        double sum = 0;
+        for (int i = -1; i <= 1; ++i)
+          for (int d = 0; d < 2; ++d) sum += (i == 0 ? 1 : beside) * std::pow(z(q, t + i, d) - z(a, s + i, d), 2);
+        order.emplace_back(sum, s);
+      }
+      std::sort(order.begin(), order.end());
+      const Eigen::RowVectorXd expected =
+          (v.row(order[0].second) + v.row(order[1].second) + v.row(order[2].second)) / 3;
+      EXPECT_TRUE(p.values.row(t).isApprox(expected, 1e-12)) << width;
     }
-    std::sort(order.begin(), order.end());
-    const Eigen::RowVectorXd expected = (v.row(order[0].second) + v.row(order[1].second) + v.row(order[2].second)) / 3;
-    EXPECT_TRUE(p.values.row(t).isApprox(expected, 1e-12));
   }
 }
 
