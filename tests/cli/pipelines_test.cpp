@@ -92,6 +92,20 @@ TEST(Pipelines, OfTheSourcesCorporaLearnAsItDid) {
   }
 }
 
+TEST(Pipelines, ComparedInAStyleHaveItsSettingsInEveryRow) {
+  const Registry registry = all_nodes();
+  for (const auto& [name, dimension] : {std::pair{"compared-lips.json", 5}, {"compared-demnow.json", 4}}) {
+    Diagnostics diagnostics;
+    const auto graph = load_graph(test::source("/pipelines/") + std::string(name), registry, diagnostics);
+    ASSERT_TRUE(graph) << diagnostics.str();
+    for (const char* row : {"learnt", "learnt_one", "learnt_phones", "learnt_source"}) {
+      const Json& state = graph->resolved.at("nodes").at("face/" + std::string(row) + "/sgpdm").at("params");
+      EXPECT_EQ(state.at("latent_dimension"), dimension) << row;
+      EXPECT_EQ(state.at("dynamics_inverse_width"), 1000) << row;
+    }
+  }
+}
+
 // Each choice of speech parameters is one setting for training, synthesis and the graph that the model speaks with.
 TEST(Pipelines, SpeakWithTheSpeechParametersOfTraining) {
   const Registry registry = all_nodes();
