@@ -125,8 +125,10 @@ std::string draw_svg(const Graph& graph) {
   close(file);
   std::ofstream(name) << draw_dot(graph);
   std::string svg;
-  // Graphviz 2.43 loses its way in some large graphs with nested boxes, in others than without the one or other option.
-  for (const char* command : {"dot -Tsvg {}", "dot -Tsvg -Gsearchsize=3 {}", "sed /newrank/d {} | dot -Tsvg"}) {
+  // Graphviz 2.43 loses its way in some large graphs with nested boxes: then the boxes are laid out in the old way, or
+  // left out.
+  for (const char* command :
+       {"dot -Tsvg {}", "sed /newrank/d {} | dot -Tsvg", "sed /newrank/d {} | dot -Tsvg -Gclusterrank=none"}) {
     std::FILE* dot = popen((fmt::format(fmt::runtime(command), name) + " 2>/dev/null").c_str(), "r");
     svg.clear();
     char part[4096];
