@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include "nodes/types/gmm.h"
+#include "nodes/types/scaling.h"
 #include "nodes/types/sgpdm.h"
 
 namespace talkgraph {
@@ -30,6 +33,17 @@ void StoredModel::covariance(const std::string& member, const Eigen::MatrixXd& m
 void StoredModel::weights(const std::string& member, const Eigen::Ref<const Eigen::MatrixXd>& w) const {
   require(w.allFinite() && w.size() > 0 && w.minCoeff() >= 0 && w.maxCoeff() > 0, member,
           "has values that are no weights");
+}
+
+void StoredModel::variances(const std::string& member, const Eigen::MatrixXd& v, Eigen::Index rows,
+                            Eigen::Index columns) const {
+  matrix(member, v, rows, columns);
+  require((v.array() > 0).all(), member, "has a value that is not above 0");
+}
+
+void StoredModel::sorted(const std::string& member, const std::vector<std::string>& names) const {
+  require(std::adjacent_find(names.begin(), names.end(), std::greater_equal<>()) == names.end(), member,
+          "is not sorted");
 }
 
 void StoredModel::not_negative(const std::string& member, double value) const {
@@ -66,6 +80,18 @@ void StoredModel::mixture(const std::string& member, const GaussianMixture& m, E
   matrix(member + ".means", m.means, m.components(), dimension);
   require(std::ssize(m.covariances) == m.components(), member + ".covariances", "are not one a component");
   for (const auto& c : m.covariances) covariance(member + ".covariances", c, dimension);
+}
+
+void StoredModel::mixtures(const std::string& member, const std::vector<GaussianMixture>& of_states,
+                           Eigen::Index states, Eigen::Index dimension) const {
+  require(std::ssize(of_states) == states, member, "are not one a state");
+  for (const auto& m : of_states) mixture(member, m, dimension);
+}
+
+void StoredModel::scaling(const std::string& member, const Scaling& scaling, Eigen::Index dimension) const {
+  matrix(member + ".mean", scaling.mean, 1, dimension);
+  matrix(member + ".deviation", scaling.deviation, 1, dimension);
+  require((scaling.deviation.array() >= 0).all(), member + ".deviation", "has a value below 0");
 }
 
 }  // namespace talkgraph

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "nodes/types/stored_model.h"
 
@@ -127,8 +126,7 @@ void check_transitions(const Vlmm& v, const Vlmm::State& state) {
 
 void check(const Vlmm& v) {
   stored.require(!v.states.empty() && v.states[0].memory.empty(), "memories", "do not begin with the empty one");
-  stored.require(std::adjacent_find(v.alphabet.begin(), v.alphabet.end(), std::greater_equal<>()) == v.alphabet.end(),
-                 "alphabet", "is not sorted");
+  stored.sorted("alphabet", v.alphabet);
   for (const auto& state : v.states) check_memory(v, state.memory);
   for (const auto& state : v.states) check_transitions(v, state);
   for (const auto& symbol : v.alphabet) stored.require(v.windows.contains(symbol), "windows", "lack a symbol");
