@@ -149,7 +149,7 @@ std::string state_of(const ExperimentSeries::Part& part) {
   const auto ended = std::count_if(part.results.begin(), part.results.end(),
                                    [](const TrialResult& r) { return r.status == TrialResult::Status::finished; });
   const auto all = part.experiment.trials.size();
-  return static_cast<std::size_t>(ended) == all ? "" : fmt::format(" {} of {} runs finished so far.", ended, all);
+  return static_cast<std::size_t>(ended) == all ? "" : fmt::format("{} of {} runs finished so far. ", ended, all);
 }
 
 }  // namespace
@@ -179,8 +179,9 @@ std::string series_page(const ExperimentSeries& series) {
     page += table_of(section.words);
     for (const auto& part : section.parts) {
       const std::string name = escape_markup(part.experiment.name);
-      page += fmt::format("<h3>{}</h3>\n<p>{}{} <a href=\"{}/experiment.html\">Its own page</a> has every run.</p>\n",
-                          name, escape_markup(part.experiment.description), state_of(part), name);
+      page +=
+          fmt::format("<h3>{0}</h3>\n{1}<p>{2}<a href=\"{0}/experiment.html\">Its own page</a> has every run.</p>\n",
+                      name, paragraphs(part.experiment.description), state_of(part));
       page += html_results(part.experiment, part.results, part.experiment.name + "/");
     }
   }

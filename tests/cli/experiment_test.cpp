@@ -39,7 +39,8 @@ TEST_F(SeriesCommand, RunsAllAndTellsOfThemOnOnePage) {
   EXPECT_EQ(run(file), 0);
   const auto page = folder_.read("out/report.html");
   for (const char* text : {"<p>A story</p>", "<h2>First &lt;1&gt;</h2>\n<p>Once.</p>\n<p>Twice.</p>", "<h2>Second</h2>",
-                           "Slopes", "two/experiment.html", "one/trials/run/pictures/1.svg", "<h2>End</h2>\n<p>So.</p>",
+                           "<p>Slopes</p>\n<p><a href=\"two/experiment.html\">Its own page</a>",
+                           "one/trials/run/pictures/1.svg", "<h2>End</h2>\n<p>So.</p>",
                            "<th scope=\"col\" class=\"text\">&lt;a&gt;</th>", "<td class=\"text\">x &amp; y</td>"})
     EXPECT_THAT(page, HasSubstr(text));
   EXPECT_THAT(page, Not(HasSubstr("so far")));
