@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <set>
 
 #include "cli/run.h"
 #include "nodes/all_nodes.h"
@@ -100,11 +99,11 @@ TEST(CacheCommand, DamagedEntriesAreNamedAndRemoved) {
   EXPECT_EQ(cache.entries().size(), 0u);
 }
 
-// What can be written must be such that it can be loaded, but for a model that was never trained.
+// What can be written must be such that it can be loaded, but for a model that was never trained: no other type asks
+// for that.
 TEST(Nodes, WhatTheyGiveCanBeWrittenAndLoaded) {
   const test::TemporaryFolder folder;
   const Registry registry = all_nodes();
-  const std::set<std::string> models = {"model", "face", "vlmm", "contexts", "reader"};
   for (const auto& name : registry.names()) {
     const NodeType& type = *registry.find(name);
     for (const auto& port : type.outputs) {
@@ -115,7 +114,6 @@ TEST(Nodes, WhatTheyGiveCanBeWrittenAndLoaded) {
       try {
         port.info->visit(*hdf5_reader(file), port.info->make().get());
       } catch (const std::runtime_error& e) {
-        EXPECT_TRUE(models.contains(port.name)) << name << " " << port.name;
         EXPECT_THAT(e.what(), HasSubstr("train it anew")) << name << " " << port.name;
       }
     }

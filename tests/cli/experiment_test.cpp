@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/experiment/scored_nodes.h"
-#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
@@ -12,25 +11,14 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-class SeriesCommand : public testing::Test {
+class SeriesCommand : public test::ScoredExperiments {
  protected:
-  SeriesCommand() {
-    folder_.write("graph.json", test::scored_graph);
-    folder_.write("one.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "show": ["files"] })");
-    folder_.write("two.json", R"({ "graph": "graph.json", "description": "Slopes", "tabulate": ["scores"],
-                                   "vary": { "scale": [1, 2] } })");
-  }
-  std::string series(const std::string& sections) {
-    return folder_.write("story.json", R"({ "description": "A story", "sections": [)" + sections + "] }");
-  }
   int run(const std::string& file) {
     cli::ExperimentCommand command;
     command.run.folder = folder_.path() / "out";
     command.run.progress = ProgressStyle::quiet;
     return cli::run_experiment(file, command, test::scored_registry());
   }
-
-  const test::TemporaryFolder folder_;
 };
 
 TEST_F(SeriesCommand, RunsAllAndTellsOfThemOnOnePage) {

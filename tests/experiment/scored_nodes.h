@@ -1,11 +1,14 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <atomic>
 #include <string>
 
 #include "graph/output_file.h"
 #include "graph/registry.h"
 #include "nodes/types/report.h"
+#include "tests/temporary_folder.h"
 
 namespace talkgraph::test {
 
@@ -78,5 +81,21 @@ inline const char* const scored_graph = R"({
   },
   "outputs": { "scores": "score", "files": "picture" }
 })";
+
+/// A folder with the experiments one.json, a run with pictures, and two.json, two slopes, and series of them.
+class ScoredExperiments : public ::testing::Test {
+ protected:
+  ScoredExperiments() {
+    folder_.write("graph.json", scored_graph);
+    folder_.write("one.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "show": ["files"] })");
+    folder_.write("two.json", R"({ "graph": "graph.json", "description": "Slopes", "tabulate": ["scores"],
+                                   "vary": { "scale": [1, 2] } })");
+  }
+  std::string series(const std::string& sections) {
+    return folder_.write("story.json", R"({ "description": "A story", "sections": [)" + sections + "] }");
+  }
+
+  const TemporaryFolder folder_;
+};
 
 }  // namespace talkgraph::test

@@ -4,24 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/experiment/scored_nodes.h"
-#include "tests/temporary_folder.h"
 
 namespace talkgraph {
 namespace {
 
 using testing::HasSubstr;
 
-class SeriesTest : public testing::Test {
+class SeriesTest : public test::ScoredExperiments {
  protected:
-  SeriesTest() {
-    folder_.write("graph.json", test::scored_graph);
-    folder_.write("one.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "show": ["files"] })");
-    folder_.write("two.json", R"({ "graph": "graph.json", "description": "Slopes", "tabulate": ["scores"],
-                                   "vary": { "scale": [1, 2] } })");
-  }
-  std::string series(const std::string& sections) {
-    return folder_.write("story.json", R"({ "description": "A story", "sections": [)" + sections + "] }");
-  }
   std::string complaint(const std::string& sections, const std::vector<std::string>& sets = {}) {
     Diagnostics diagnostics;
     EXPECT_FALSE(load_series(series(sections), registry_, sets, diagnostics));
@@ -29,7 +19,6 @@ class SeriesTest : public testing::Test {
   }
 
   const Registry registry_ = test::scored_registry();
-  const test::TemporaryFolder folder_;
 };
 
 TEST_F(SeriesTest, IsToldFromAnExperiment) {
