@@ -14,6 +14,7 @@
 #include "cli/run.h"
 #include "cli/samples.h"
 #include "cli/speak.h"
+#include "cli/study_make.h"
 #include "cli/study_serve.h"
 #include "experiment/experiment.h"
 #include "graph/output_file.h"
@@ -22,6 +23,7 @@
 #include "nodes/all_nodes.h"
 #include "nodes/model/save.h"
 #include "runtime/why.h"
+#include "study/design.h"
 
 namespace {
 
@@ -226,6 +228,15 @@ int main(int argc, char** argv) {
 
   auto* study_app = app.add_subcommand("study", "ask people what they think of synthetic faces");
   study_app->require_subcommand(1);
+  StudyMakeCommand study_make;
+  auto* study_make_app = study_app->add_subcommand("make", "choose and draw the clips");
+  study_make_app->add_option("study", study_make.design, "study file")->required();
+  study_make_app->add_option("runs", study_make.runs, "folders of finished runs")->required();
+  study_make_app->add_option("-o,--folder", study_make.folder, "folder for the study")->required();
+  study_make_app->add_option("--threads", run.threads, "threads")->check(CLI::Range(1, 256));
+  study_make_app->add_option("--cache", run.cache, "the folder of kept results, if not the usual one");
+  study_make_app->add_flag("--no-cache", no_cache, "compute everything, keep nothing");
+  add_progress(*study_make_app, run.progress);
   StudyServeCommand study_serve;
   auto* study_serve_app = study_app->add_subcommand("serve", "serve the page on which people take a study");
   study_serve_app->add_option("folder", graph, "of the study")->required();
@@ -264,9 +275,10 @@ int main(int argc, char** argv) {
   diff_app->add_option("other", other, "another one (default: the same, with --set)");
   diff_app->add_option("--set", sets, "path=value, in the second graph")->take_all()->allow_extra_args(false);
 
-  auto* schema_app = app.add_subcommand("schema", "write the JSON Schema of graphs or experiments, for editors");
-  bool of_experiments = false;
-  schema_app->add_flag("--experiment", of_experiments, "of experiment files");
+  auto* schema_app = app.add_subcommand("schema", "write the JSON Schema of graphs, experiments or studies, for editors");
+  bool of_experiments = false, of_studies = false;
+  auto* of_experiments_flag = schema_app->add_flag("--experiment", of_experiments, "of experiment files");
+  schema_app->add_flag("--study", of_studies, "of study files")->excludes(of_experiments_flag);
   schema_app->add_option("-o,--output", output, "file (default: standard output)");
 
   auto* draw_app = app.add_subcommand("draw", "draw a graph");
@@ -295,13 +307,18 @@ int main(int argc, char** argv) {
       if (*speak_app) return speak(speech, registry);
       if (*corpus_check_app) return check_corpus(corpus, run, registry);
       if (*corpus_new_app) return new_corpus(corpus);
+      if (*study_make_app) return run_study_make(study_make, run, registry);
       if (*annotate_app) return run_annotate(graph, annotation);
       if (*study_serve_app) return run_study_serve(graph, study_serve);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
       if (*diff_app) return diff(graph, other.empty() ? graph : other, registry, sets);
       if (*schema_app)
-        return deliver((of_experiments ? experiment_schema() : json_schema(registry)).dump(1) + "\n", output), success;
+        return deliver((of_experiments ? experiment_schema() : of_studies ? study::design_schema() : json_schema(registry))
+                               .dump(1) +
+                           "\n",
+                       output),
+               success;
       if (*node_app) return show(known_type(registry, type), registry, only_example);
       if (*samples_app) return write_samples(run, registry);
       if (*reference_app) return write_reference(registry, output);

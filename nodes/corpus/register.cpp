@@ -6,6 +6,7 @@
 #include "nodes/corpus/manifest.h"
 #include "nodes/corpus/parts.h"
 #include "nodes/corpus/pick.h"
+#include "nodes/corpus/pick_track.h"
 #include "nodes/corpus/select.h"
 #include "nodes/corpus/splits.h"
 #include "nodes/corpus/thin.h"
@@ -18,6 +19,7 @@ void register_corpus(Registry& registry) {
   registry.add<Manifest>();
   registry.add<SoundFiles>();
   registry.add<Pick>();
+  registry.add<PickTrack>();
   registry.add<Select>();
   registry.add<Splits>();
   registry.add<Thin>();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "graph/description.h"
+#include "nodes/face/part.h"
 #include "nodes/types/appearance_model.h"
 #include "nodes/types/base_clip.h"
 #include "nodes/types/eyes.h"
@@ -8,11 +9,6 @@
 #include "nodes/types/track.h"
 
 namespace talkgraph {
-
-/// What a synthesised face takes from the parameters; the rest stays the base's.
-enum class FacePart { lower, whole };
-template <>
-inline constexpr EnumNames<FacePart, 2> enum_names<FacePart>{{{FacePart::lower, "lower"}, {FacePart::whole, "whole"}}};
 
 /// How the synthesised face joins the base picture.
 enum class Seam { feather, poisson };

@@ -13,22 +13,42 @@
 namespace talkgraph {
 namespace {
 
+std::vector<int> named(const PointScheme& scheme, std::initializer_list<const char*> groups) {
+  std::vector<int> points;
+  for (const char* name : groups) {
+    const auto group = scheme.named(name);
+    points.insert(points.end(), group.begin(), group.end());
+  }
+  return points;
+}
+
+bool has_group(const PointScheme& scheme, std::string_view name) {
+  return std::any_of(scheme.groups.begin(), scheme.groups.end(), [&](const auto& group) { return group.name == name; });
+}
+
+/// Points around the eyes: where the scheme has none on them, the brows and the upper half of the nose's bridge.
+std::vector<int> around_eyes(const PointScheme& scheme) {
+  if (has_group(scheme, "left_eye") || !has_group(scheme, "left_brow")) return named(scheme, {"left_eye", "right_eye"});
+  auto points = named(scheme, {"left_brow", "right_brow"});
+  const auto bridge = scheme.named("nose_bridge");
+  points.insert(points.end(), bridge.begin(), bridge.begin() + static_cast<std::ptrdiff_t>((bridge.size() + 1) / 2));
+  return points;
+}
+
 /// The scheme's eyes and nose; an eye is a ring of points that begins at a corner and goes over the upper lid.
 MakeEyes with_scheme(MakeEyes eyes, const AppearanceModel& model) {
   if (!eyes.points.empty()) return eyes;
   const auto scheme = scheme_of(model.scheme, model.points());
-  for (const char* name : {"left_eye", "right_eye"}) {
-    const auto ring = scheme.named(name);
-    eyes.points.insert(eyes.points.end(), ring.begin(), ring.end());
-    for (std::size_t i = 1; i < ring.size() - i; ++i) {
-      eyes.upper_lids.push_back(ring[i]);
-      eyes.lower_lids.push_back(ring[ring.size() - i]);
+  eyes.points = around_eyes(scheme);
+  eyes.nose = named(scheme, {"nose_bridge", "nose_base"});
+  if (has_group(scheme, "left_eye"))
+    for (const char* name : {"left_eye", "right_eye"}) {
+      const auto ring = scheme.named(name);
+      for (std::size_t i = 1; i < ring.size() - i; ++i) {
+        eyes.upper_lids.push_back(ring[i]);
+        eyes.lower_lids.push_back(ring[ring.size() - i]);
+      }
     }
-  }
-  for (const char* name : {"nose_bridge", "nose_base"}) {
-    const auto part = scheme.named(name);
-    eyes.nose.insert(eyes.nose.end(), part.begin(), part.end());
-  }
   return eyes;
 }
 
@@ -80,6 +100,17 @@ Eigen::RowVectorXd at_time(const Track& track, double seconds) {
 
 }  // namespace
 
+EyeBand eye_band(const Shape& face, const std::vector<int>& eyes) {
+  const Eigen::VectorXd x = face.col(0)(eyes), y = face.col(1)(eyes);
+  const double across = x.maxCoeff() - x.minCoeff();
+  return {y.minCoeff() - across / 8, y.maxCoeff() + across / 8, across / 12};
+}
+
+double below_eyes(const AppearanceModel& model) {
+  const auto band = eye_band(model.mean_shape, around_eyes(scheme_of(model.scheme, model.points())));
+  return band.bottom + band.fade;
+}
+
 double lid_closure(double since, double duration) {
   const double share = since / duration;
   return smooth_step(0, 1.0 / 3, share) * (1 - smooth_step(1.0 / 3, 1, share));
@@ -113,7 +144,7 @@ Eyes MakeEyes::operator()(const AppearanceModel& model, const Track& parameters,
 
 void describe(Description<MakeEyes>& d) {
   d.type("face.eyes")
-      .version(2)
+      .version(3)
       .summary("eyes for a face that is drawn: still, blinking, or those of other parameters");
   d.source("Thesis §6.3.5; docs/method.md §2");
   d.input("model", "of the face")
@@ -129,7 +160,8 @@ void describe(Description<MakeEyes>& d) {
       .doc("how far lids shut, standard deviations of the gap between them in the model; they stop where they meet");
   d.param("points", &MakeEyes::points)
       .at_least(0)
-      .doc("landmarks of the eyes; empty: they, the nose and the lids are those of the point scheme");
+      .doc("landmarks of the eyes; empty: they, the nose and the lids are those of the point scheme, of one that has no "
+           "eyes brows and nose around them");
   d.param("nose", &MakeEyes::nose).at_least(0).doc("landmarks that go with them, so that proportions stay");
   d.param("upper_lids", &MakeEyes::upper_lids).at_least(0).doc("landmarks on the upper lids");
   d.param("lower_lids", &MakeEyes::lower_lids).at_least(0).doc("landmarks below those, in the same order");

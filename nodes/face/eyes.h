@@ -39,6 +39,17 @@ struct MakeEyes {
 };
 void describe(Description<MakeEyes>& d);
 
+/// Rows of a face in which its eyes are replaced: an eighth of the distance across them above and below their points,
+/// beyond which they fade out.
+struct EyeBand {
+  double top, bottom, fade;
+};
+EyeBand eye_band(const Shape& face, const std::vector<int>& eyes);
+
+/// The row of the mean shape below which nothing of the eyes is seen. Throws std::runtime_error if the model's point
+/// scheme is unknown or says nothing of where they are.
+double below_eyes(const AppearanceModel& model);
+
 /// How far lids are shut, 0 to 1, `since` seconds after a blink's begin: a third of its duration down, the rest up.
 double lid_closure(double since, double duration);
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "nodes/face/draw.h"
+#include "nodes/face/eyes.h"
 #include "nodes/face/geometry.h"
 #include "nodes/face/shapes.h"
 
@@ -46,7 +47,6 @@ Looks::Looks(AppearanceModel model, Track parameters, const Eyes* eyes, const Mo
   if (mouths && !mouths->chosen.empty()) mouths_ = *mouths, prepare_mouths();
 }
 
-/// The band reaches above and below the eyes by an eighth of the distance across both, and then fades.
 void Looks::prepare_eyes() {
   check_dimension(model_, eyes_.parameters);
   check_finite(eyes_.parameters);
@@ -59,12 +59,11 @@ void Looks::prepare_eyes() {
             fmt::format("the face model has {} points and so no point {}: name those of the eyes", model_.points(), i));
       eye_points_(i) = 1;
     }
-  const Eigen::VectorXd y = raster.points.col(1)(eyes_.points), x = raster.points.col(0)(eyes_.points);
-  const double across = x.maxCoeff() - x.minCoeff(), reach = across / 8, fade = across / 12;
+  const auto [top, bottom, fade] = eye_band(raster.points, eyes_.points);
   for (std::size_t i = 0; i < raster.x.size(); ++i)
     eye_share_.at<float>(raster.y[i], raster.x[i]) =
-        static_cast<float>(smooth_step(y.minCoeff() - reach - fade, y.minCoeff() - reach, raster.y[i]) *
-                           (1 - smooth_step(y.maxCoeff() + reach, y.maxCoeff() + reach + fade, raster.y[i])));
+        static_cast<float>(smooth_step(top - fade, top, raster.y[i]) *
+                           (1 - smooth_step(bottom, bottom + fade, raster.y[i])));
 }
 
 void Looks::prepare_mouths() {

@@ -5,35 +5,54 @@
 #include <opencv2/core/hal/intrin.hpp>
 
 #include "nodes/face/draw.h"
+#include "nodes/face/eyes.h"
 #include "nodes/face/look.h"
 
 namespace talkgraph {
 namespace {
 
-/// Even, with room for the face to move by a tenth of its size.
-cv::Size canvas(const AppearanceModel& model, double zoom) {
-  const Eigen::RowVector2d extent = model.mean_shape.colwise().maxCoeff() - model.mean_shape.colwise().minCoeff();
-  const auto side = [&](double length) { return 2 * static_cast<int>(std::ceil(0.5 * (1.2 * length * zoom + 2))); };
-  return {side(extent.x()), side(extent.y())};
-}
+/// What the pictures of a model's faces show.
+struct View {
+  double zoom;
+  Eigen::RowVector2d middle;  ///< model frame
+  cv::Size size;
+  int hidden = 0;  ///< rows at the top
+
+  /// Even sides, with room for the face to move by a tenth of its size.
+  View(const AppearanceModel& model, const RenderFace& settings) : zoom(settings.zoom) {
+    Eigen::RowVector2d low = model.mean_shape.colwise().minCoeff();
+    const Eigen::RowVector2d high = model.mean_shape.colwise().maxCoeff();
+    if (settings.part == FacePart::lower) low.y() = below_eyes(model);
+    const Eigen::RowVector2d extent = 1.2 * (high - low);
+    middle = 0.5 * (low + high);
+    if (settings.size > 0) zoom = settings.size / extent.maxCoeff();
+    const auto side = [&](double length) { return 2 * static_cast<int>(std::ceil(0.5 * (length * zoom + 2))); };
+    size = settings.size > 0 ? cv::Size(settings.size, settings.size) : cv::Size(side(extent.x()), side(extent.y()));
+    if (settings.part == FacePart::lower) hidden = static_cast<int>(std::ceil(place(low).y()));
+  }
+
+  Eigen::RowVector2d place(const Eigen::RowVector2d& at) const {
+    return zoom * (at - middle) + Eigen::RowVector2d(0.5 * (size.width - 1), 0.5 * (size.height - 1));
+  }
+};
 
 /// Draws faces of one model, one after the other.
 class Brush {
  public:
-  Brush(const AppearanceModel& model, double zoom, int background)
-      : model_(model), zoom_(zoom), background_(background), size_(canvas(model, zoom)) {
+  Brush(const AppearanceModel& model, const RenderFace& settings)
+      : model_(model), background_(settings.background), view_(model, settings) {
     const auto& raster = model.levels.at(0).raster;
-    picture_ = cv::Mat(raster.height, raster.width, CV_8UC4, cv::Scalar::all(background));
-    middle_ = 0.5 * (model.mean_shape.colwise().maxCoeff() + model.mean_shape.colwise().minCoeff());
+    picture_ = cv::Mat(raster.height, raster.width, CV_8UC4, cv::Scalar::all(background_));
   }
 
   cv::Mat operator()(const Look& look) {
     const auto& raster = model_.levels[0].raster;
     lay_out(look.texture);
-    const Shape to = ((look.shape.rowwise() - middle_) * zoom_).rowwise() +
-                     Eigen::RowVector2d(0.5 * (size_.width - 1), 0.5 * (size_.height - 1));
-    cv::Mat out(size_, CV_8UC3, cv::Scalar::all(background_));
+    Shape to = look.shape;
+    for (auto point : to.rowwise()) point = view_.place(point);
+    cv::Mat out(view_.size, CV_8UC3, cv::Scalar::all(background_));
     draw_triangles(out, to, picture_, raster.points, model_.triangles);
+    out.rowRange(0, view_.hidden).setTo(cv::Scalar::all(background_));
     return out;
   }
 
@@ -58,10 +77,8 @@ class Brush {
   }
 
   const AppearanceModel& model_;
-  double zoom_;
   int background_;
-  cv::Size size_;
-  Eigen::RowVector2d middle_;
+  View view_;
   cv::Mat picture_;
 };
 
@@ -75,7 +92,7 @@ class FaceReader final : public VideoSource::Reader {
   explicit FaceReader(const Scene& scene)
       : looks_(scene.looks),
         reader_(scene.looks),
-        brush_(looks_->model(), scene.settings.zoom, scene.settings.background) {}
+        brush_(looks_->model(), scene.settings) {}
   bool next(cv::Mat& frame) override {
     const Look* look = reader_.next();
     if (look) frame = brush_(*look);
@@ -93,7 +110,7 @@ class FaceSource final : public VideoSource {
   explicit FaceSource(Scene scene) : scene_(std::move(scene)) {}
   Rational rate() const override { return scene_.looks->parameters().rate; }
   std::int64_t frames() const override { return scene_.looks->parameters().frames(); }
-  cv::Size size() const override { return canvas(scene_.looks->model(), scene_.settings.zoom); }
+  cv::Size size() const override { return View(scene_.looks->model(), scene_.settings).size; }
   std::unique_ptr<Reader> open() const override { return std::make_unique<FaceReader>(scene_); }
   std::string name() const override { return "rendered face"; }
   Key key() const override {
@@ -102,6 +119,9 @@ class FaceSource final : public VideoSource {
       scene_.looks->hash(ar);
       ar("zoom", settings.zoom);
       ar("background", settings.background);
+      auto part = static_cast<std::int64_t>(settings.part);
+      ar("part", part);
+      ar("size", settings.size);
     });
   }
 
@@ -112,12 +132,14 @@ class FaceSource final : public VideoSource {
 }  // namespace
 
 cv::Mat draw_face(const AppearanceModel& model, const Eigen::VectorXd& c, double zoom, int background) {
-  return Brush(model, zoom, background)({model.shape(c), model.texture(c)});
+  return Brush(model, {zoom, background})({model.shape(c), model.texture(c)});
 }
 
 Video RenderFace::operator()(const AppearanceModel& model, const Track& parameters, const Eyes* eyes,
                              const MouthTrack* mouths) const {
-  return {std::make_shared<FaceSource>(Scene{std::make_shared<Looks>(model, parameters, eyes, mouths), *this}), {}};
+  auto looks = std::make_shared<Looks>(model, parameters, eyes, mouths);
+  if (part == FacePart::lower) below_eyes(model);  // throws now, not when read
+  return {std::make_shared<FaceSource>(Scene{std::move(looks), *this}), {}};
 }
 
 void describe(Description<RenderFace>& d) {
@@ -128,8 +150,13 @@ void describe(Description<RenderFace>& d) {
       .input("eyes", "shown in place of the parameters' own")
       .input("mouths", "real ones, shown in place of the model's")
       .output("video", "as many frames as the track has");
-  d.param("zoom", &RenderFace::zoom).positive().doc("pixels per pixel of the mean shape");
+  d.param("zoom", &RenderFace::zoom).positive().doc("pixels per pixel of the mean shape, where no size is given");
   d.param("background", &RenderFace::background).within(0, 255).doc("grey level around the face");
+  d.param("part", &RenderFace::part).doc("the whole face, or what lies below the eyes");
+  d.param("size", &RenderFace::size)
+      .within(0, 4096)
+      .unit("pixels")
+      .doc("of square pictures, which the part fills; 0: pictures as large as the face needs at this zoom");
 }
 
 }  // namespace talkgraph

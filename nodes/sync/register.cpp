@@ -6,6 +6,7 @@
 #include "nodes/sync/polyphase.h"
 #include "nodes/sync/quadrature.h"
 #include "nodes/sync/shift.h"
+#include "nodes/sync/together.h"
 
 namespace talkgraph {
 
@@ -15,6 +16,7 @@ void register_sync(Registry& registry) {
   registry.add<Polyphase>();
   registry.add<Quadrature>();
   registry.add<Shift>();
+  registry.add<Together>();
   registry.add<VideoFrames>();
 }
 

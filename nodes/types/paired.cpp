@@ -7,16 +7,12 @@
 
 namespace talkgraph {
 
-namespace {
-
 Track beginning(const Track& track, Eigen::Index frames) {
   Track t = track;
   t.values.conservativeResize(frames, Eigen::NoChange);
   while (!t.lost.empty() && t.lost.back() >= frames) t.lost.pop_back();
   return t;
 }
-
-}  // namespace
 
 Eigen::Index common_frames(const std::string& utterance, Eigen::Index a, const char* of_a, Eigen::Index b,
                            const char* of_b) {

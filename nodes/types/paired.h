@@ -10,6 +10,9 @@ namespace talkgraph {
 Eigen::Index common_frames(const std::string& utterance, Eigen::Index a, const char* of_a, Eigen::Index b,
                            const char* of_b);
 
+/// The first frames of a track.
+Track beginning(const Track& track, Eigen::Index frames);
+
 /// Audio and visual frames side by side, lost where the face is, of the utterances that both streams have. Throws
 /// std::runtime_error as common_frames(), and if there is none.
 struct JoinedStreams {

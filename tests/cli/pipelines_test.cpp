@@ -20,7 +20,7 @@ std::vector<std::string> pipelines() {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source("/pipelines")))
     if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with("talkgraph.") &&
-        entry.path().parent_path().filename() != "experiments")
+        entry.path().parent_path().filename() != "experiments" && entry.path().parent_path().filename() != "studies")
       files.push_back(entry.path().string());
   return files;
 }

@@ -8,6 +8,7 @@
 
 #include "experiment/experiment.h"
 #include "nodes/all_nodes.h"
+#include "study/design.h"
 #include "tests/source_folder.h"
 #include "tests/temporary_folder.h"
 
@@ -57,12 +58,27 @@ std::string instances(const std::vector<fs::path>& files) {
   return out;
 }
 
-TEST_F(Schema, HoldsForEveryPipelineAndExperiment) {
+TEST_F(Schema, HoldsForEveryPipelineExperimentAndStudy) {
   EXPECT_EQ(
       complaints(instances(files_naming("talkgraph.schema.json")) + " -i '" + test::source("/cli/examples.json") + "'"),
       "");
   const std::string schema = folder_.write("experiment.schema.json", experiment_schema().dump());
   EXPECT_EQ(complaints(instances(files_naming("talkgraph.experiment.schema.json")), schema), "");
+  const std::string of_studies = folder_.write("study.schema.json", study::design_schema().dump());
+  EXPECT_EQ(complaints(instances(files_naming("talkgraph.study.schema.json")), of_studies), "");
+}
+
+TEST_F(Schema, OfStudiesFindsWhatIsWrong) {
+  using testing::HasSubstr;
+  const std::string schema = folder_.write("study.schema.json", study::design_schema().dump());
+  const auto complaints_of_study = [&](const std::string& members) {
+    return complaints("-i '" + folder_.write("s.json", "{" + members + "}") + "'", schema);
+  };
+  EXPECT_EQ(complaints_of_study(R"("extends": "study.json", "tests": { "turing": null, "read": { "clips": 4 } })"), "");
+  EXPECT_THAT(complaints_of_study(R"("title": "Faces")"), HasSubstr("is not valid"));
+  EXPECT_THAT(complaints_of_study(R"("extends": "study.json", "test": {})"), HasSubstr("test"));
+  EXPECT_THAT(complaints_of_study(R"("extends": "study.json", "tests": { "a b": {} })"), HasSubstr("a b"));
+  EXPECT_THAT(complaints_of_study(R"("extends": "study.json", "tests": { "a": { "clips": 0 } })"), HasSubstr("clips"));
 }
 
 TEST_F(Schema, RefusesNamesThatNoNodeMayHave) {
@@ -136,13 +152,16 @@ TEST_F(Schema, BesideThePipelinesIsUpToDate) {
       << "stale: run build/talkgraph schema -o pipelines/talkgraph.schema.json";
   EXPECT_TRUE(there("talkgraph.experiment.schema.json") == experiment_schema())
       << "stale: run build/talkgraph schema --experiment -o pipelines/talkgraph.experiment.schema.json";
+  EXPECT_TRUE(there("talkgraph.study.schema.json") == study::design_schema())
+      << "stale: run build/talkgraph schema --study -o pipelines/talkgraph.study.schema.json";
 }
 
-TEST_F(Schema, IsNamedByEveryPipelineAndExperiment) {
+TEST_F(Schema, IsNamedByEveryPipelineExperimentAndStudy) {
   std::size_t all = 0;
   for (const auto& entry : fs::recursive_directory_iterator(pipelines))
     all += entry.path().extension() == ".json" && !entry.path().filename().string().starts_with("talkgraph.");
-  EXPECT_EQ(files_naming("talkgraph.schema.json").size() + files_naming("talkgraph.experiment.schema.json").size(),
+  EXPECT_EQ(files_naming("talkgraph.schema.json").size() + files_naming("talkgraph.experiment.schema.json").size() +
+                files_naming("talkgraph.study.schema.json").size(),
             all);
 }
 
