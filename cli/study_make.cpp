@@ -26,12 +26,13 @@ int run_study_make(const StudyMakeCommand& command, const RunCommand& run, const
     return *std::move(outcome.result);
   };
   const auto design = study::load_design(command.design, diagnostics);
-  const auto made =
-      design ? study::make_study(*design, command.runs, command.folder, registry, run_below, diagnostics) : std::nullopt;
+  const auto made = design ? study::make_study(*design, command.runs, command.folder, registry, run_below, diagnostics)
+                           : std::nullopt;
   if (!made) return fmt::print(stderr, "{}\n", diagnostics.str()), usage;
   for (const auto& note : made->notes) fmt::print(stderr, "{}\n", note);
   for (const auto& test : made->study.tests)
-    fmt::print(stderr, "{}: {} clips, of each category {} to a person\n", test.id, test.clips.size(), test.per_category);
+    fmt::print(stderr, "{}: {} clips, of each category {} to a person\n", test.id, test.clips.size(),
+               test.per_category);
   fmt::print("{}\n", command.folder.string());
   return success;
 } catch (const Ended& ended) {

@@ -151,8 +151,8 @@ class Chooser {
     Study study{design_.title, design_.consent, design_.thanks, design_.profile, design_.split_by, {}};
     for (const auto& test : design_.tests) {
       if (!check_even(test)) continue;
-      study.tests.push_back({test.id, test.kind, test.title, test.instructions, test.questions,
-                             static_cast<int>(shown(test)), {}});
+      study.tests.push_back(
+          {test.id, test.kind, test.title, test.instructions, test.questions, static_cast<int>(shown(test)), {}});
     }
     for (const auto& speaker : speakers_) add(speaker, study, notes);
     if (!diagnostics_.ok()) return {};
@@ -230,10 +230,10 @@ class Chooser {
                                   : "";
     diagnostics_.error(
         design_.at({"tests", test.id, "clips"}),
-        fmt::format("test \"{}\": {} sequences are needed for each category, but {} has {} held out{}: at most {} clips "
-                    "can be shown",
-                    test.id, part.shown, speaker.title, part.usable.size(), which,
-                    part.usable.size() * categories(test)));
+        fmt::format(
+            "test \"{}\": {} sequences are needed for each category, but {} has {} held out{}: at most {} clips "
+            "can be shown",
+            test.id, part.shown, speaker.title, part.usable.size(), which, part.usable.size() * categories(test)));
   }
 
   void name_clips(const Part& part, const Speaker& speaker, Test& test) {

@@ -56,9 +56,10 @@ class Reader {
  private:
   const LocatedJson* member(const LocatedJson& json, const char* key, const std::string& subject) {
     if (const auto* m = json.find(key)) return &m->value;
-    diagnostics_.error(json.place, fmt::format("{}: \"{}\" is missing; a study that extends pipelines/studies/study.json "
-                                               "has all that it does not change",
-                                               subject, key));
+    diagnostics_.error(json.place,
+                       fmt::format("{}: \"{}\" is missing; a study that extends pipelines/studies/study.json "
+                                   "has all that it does not change",
+                                   subject, key));
     return nullptr;
   }
 
@@ -75,8 +76,7 @@ class Reader {
   Ports ports(const LocatedJson& json) {
     Ports out;
     if (!detail::expect_object(json, "\"take\"", diagnostics_)) return out;
-    detail::check_keys(json,
-                       {"face", "recorded", "synthesised", "mean", "mouths", "audio", "recordings", "sentences"},
+    detail::check_keys(json, {"face", "recorded", "synthesised", "mean", "mouths", "audio", "recordings", "sentences"},
                        "\"take\"", diagnostics_);
     need(json, "face", out.face, "\"take\"");
     need(json, "recorded", out.recorded, "\"take\"");
@@ -91,7 +91,8 @@ class Reader {
 
   void check_id(const LocatedJson::Member& m) {
     if (!is_name(m.key))
-      diagnostics_.error(m.key_place, fmt::format("\"{}\" cannot be a name: take up to 64 letters, digits, _ and -", m.key));
+      diagnostics_.error(m.key_place,
+                         fmt::format("\"{}\" cannot be a name: take up to 64 letters, digits, _ and -", m.key));
   }
 
   std::vector<Question> questions(const LocatedJson& json, const std::string& subject, bool with_options) {
@@ -176,9 +177,9 @@ class Reader {
     std::vector<std::string> known;
     for (const auto& q : design.profile) known.push_back(q.id);
     if (design.split_by.empty() || std::find(known.begin(), known.end(), design.split_by) != known.end()) return;
-    diagnostics_.error(json.find("split_by")->value.place, fmt::format("the profile has no question \"{}\"{}",
-                                                                       design.split_by,
-                                                                       did_you_mean(design.split_by, known)));
+    diagnostics_.error(
+        json.find("split_by")->value.place,
+        fmt::format("the profile has no question \"{}\"{}", design.split_by, did_you_mean(design.split_by, known)));
   }
 
   Diagnostics& diagnostics_;

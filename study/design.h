@@ -37,7 +37,7 @@ struct Ports {
   std::string mouths;       ///< Mouths
   std::string audio;        ///< Stream<Audio>
   std::string recordings;   ///< Stream<Recording>: those held out
-  std::string sentences;    ///< Stream<Recording>: whose transcripts join those of the former as false choices, or empty
+  std::string sentences;  ///< Stream<Recording>: whose transcripts join those of the former as false choices, or empty
 
   /// Each with its name.
   std::vector<std::pair<std::string, std::string>> all() const;

@@ -42,9 +42,10 @@ void check_finished(const fs::path& folder, const Json& run) {
     why = fmt::format("{} failed, the first of them {} [{}]: {}", failures.size(), failures[0].value("node", ""),
                       failures[0].value("item", ""), failures[0].value("cause", ""));
   if (status == "running") why = "it still runs, or was killed";
-  throw std::runtime_error(fmt::format("{}: the run has not finished as it should{}: take what fails out of it, and run "
-                                       "it to its end; what is done is found again",
-                                       folder.string(), why.empty() ? "" : " (" + why + ")"));
+  throw std::runtime_error(
+      fmt::format("{}: the run has not finished as it should{}: take what fails out of it, and run "
+                  "it to its end; what is done is found again",
+                  folder.string(), why.empty() ? "" : " (" + why + ")"));
 }
 
 std::string title_of(const Json& graph, const fs::path& folder) {
@@ -119,12 +120,9 @@ std::vector<Batch> batches(const Study& study, const std::string& speaker) {
 }
 
 Json drawing(const Batch& batch, const Design& design, const Ports& ports) {
-  Json in = {{"face", ports.face},
-             {"shown", batch.synthetic ? ports.synthesised : ports.recorded},
-             {"recorded", ports.recorded},
-             {"synthesised", ports.synthesised},
-             {"mean", ports.mean},
-             {"mouths", ports.mouths}};
+  Json in = {{"face", ports.face},         {"shown", batch.synthetic ? ports.synthesised : ports.recorded},
+             {"recorded", ports.recorded}, {"synthesised", ports.synthesised},
+             {"mean", ports.mean},         {"mouths", ports.mouths}};
   if (batch.test->kind != TestKind::intelligibility) in["audio"] = ports.audio;
   Json ids = Json::array();
   for (const auto& [sequence, clip] : batch.clips) ids.push_back(sequence);
@@ -133,7 +131,9 @@ Json drawing(const Batch& batch, const Design& design, const Ports& ports) {
           {"params",
            {{"ids", ids},
             {"part", batch.test->kind == TestKind::turing ? "lower" : "whole"},
-            {"eyes", batch.test->kind == TestKind::turing ? "base" : batch.eyes == "static" ? "still" : "given"},
+            {"eyes", batch.test->kind == TestKind::turing ? "base"
+                     : batch.eyes == "static"             ? "still"
+                                                          : "given"},
             {"folder", batch.name}}}};
 }
 
@@ -153,8 +153,8 @@ bool FinishedRun::find(const Design& design, const Registry& registry, Diagnosti
   std::map<std::string, std::string> found;
   bool ok = true;
   const auto complain = [&](const std::string& role, const std::string& text) {
-    diagnostics.error(design.at({"take", role}),
-                      fmt::format("\"{}\": {} {}: name the port of that graph that is meant", role, folder_.string(), text));
+    diagnostics.error(design.at({"take", role}), fmt::format("\"{}\": {} {}: name the port of that graph that is meant",
+                                                             role, folder_.string(), text));
     ok = false;
   };
   for (const auto& [role, name] : design.ports.all()) {
@@ -199,13 +199,14 @@ Graph FinishedRun::load(Json nodes, const Json& outputs, const Registry& registr
   Diagnostics diagnostics;
   auto graph = load_graph_text((folder_ / "study.json").string(), json.dump(1), registry, diagnostics);
   if (!graph)
-    throw std::runtime_error(
-        fmt::format("{}: the graph of the run does not take what draws the clips:\n{}", folder_.string(), diagnostics.str()));
+    throw std::runtime_error(fmt::format("{}: the graph of the run does not take what draws the clips:\n{}",
+                                         folder_.string(), diagnostics.str()));
   return *std::move(graph);
 }
 
 Speaker FinishedRun::speaker(const Registry& registry, const RunGraph& run, const fs::path& desk) const {
-  Json outputs = {{"recordings", ports_.recordings}, {"recorded", ports_.recorded}, {"synthesised", ports_.synthesised}};
+  Json outputs = {
+      {"recordings", ports_.recordings}, {"recorded", ports_.recorded}, {"synthesised", ports_.synthesised}};
   if (!ports_.sentences.empty()) outputs["sentences"] = ports_.sentences;
   std::vector<std::string> ports;
   for (const auto& port : outputs) ports.push_back(port);
@@ -229,7 +230,8 @@ Speaker FinishedRun::speaker(const Registry& registry, const RunGraph& run, cons
                     folder_.string()));
   if (!ports_.sentences.empty())
     for (const auto& item : result.output("sentences").items)
-      if (const auto& transcript = item.value.get<Recording>().transcript) speaker.sentences.push_back(transcript->text);
+      if (const auto& transcript = item.value.get<Recording>().transcript)
+        speaker.sentences.push_back(transcript->text);
   return speaker;
 }
 
@@ -248,8 +250,7 @@ void FinishedRun::draw(const Design& design, const Study& study, const std::stri
     for (const char* format : {"webm", "mp4"})
       for (const auto& [sequence, id] : batch.clips) {
         const auto* file = study::find(result.output(batch.name + format), sequence);
-        if (!file)
-          throw std::runtime_error(fmt::format("{}: no clip was drawn of {}", folder_.string(), sequence));
+        if (!file) throw std::runtime_error(fmt::format("{}: no clip was drawn of {}", folder_.string(), sequence));
         fs::rename(desk / file->get<Artifact>().path, desk / "clips" / fmt::format("{}.{}", id, format));
       }
 }

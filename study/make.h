@@ -24,9 +24,9 @@ struct MadeStudy {
 /// Makes a study of the folders of runs: chooses clips, draws them as the runs' own graphs with the design's graph laid
 /// over them, and writes FOLDER/clips and, last of all, FOLDER/study.json. The folder must be new, empty, or left by a
 /// making that did not come to its end.
-/// Complaints about the design go to `diagnostics`, and nothing is made then. Throws std::runtime_error that names a run
-/// that is none, has not finished, has failures or nothing held out; std::invalid_argument that names the folder if it
-/// holds other things.
+/// Complaints about the design go to `diagnostics`, and nothing is made then. Throws std::runtime_error that names a
+/// run that is none, has not finished, has failures or nothing held out; std::invalid_argument that names the folder if
+/// it holds other things.
 std::optional<MadeStudy> make_study(const Design& design, const std::vector<std::filesystem::path>& runs,
                                     const std::filesystem::path& folder, const Registry& registry, const RunGraph& run,
                                     Diagnostics& diagnostics);

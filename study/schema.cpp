@@ -34,8 +34,9 @@ Json question() {
 Json test() {
   return object({{"kind",
                   {{"enum", {"turing", "perceptual", "intelligibility"}},
-                   {"description", "turing: lower halves of faces; perceptual: whole faces, with recorded and static "
-                                   "eyes; intelligibility: silent clips and sentences to choose from"}}},
+                   {"description",
+                    "turing: lower halves of faces; perceptual: whole faces, with recorded and static "
+                    "eyes; intelligibility: silent clips and sentences to choose from"}}},
                  {"title", text("heading")},
                  {"instructions", texts("paragraphs")},
                  {"questions", named(question(), "asked about each clip")},
@@ -46,8 +47,12 @@ Json test() {
                    {"items", {{"enum", {"recorded", "static"}}}},
                    {"uniqueItems", true},
                    {"description", "of a perceptual test: a category for each; none: those of the recording"}}},
-                 {"choices", {{"type", "integer"}, {"minimum", 2}, {"maximum", 20}, {"default", 4},
-                              {"description", "of an intelligibility test: sentences to choose from"}}}});
+                 {"choices",
+                  {{"type", "integer"},
+                   {"minimum", 2},
+                   {"maximum", 20},
+                   {"default", 4},
+                   {"description", "of an intelligibility test: sentences to choose from"}}}});
 }
 
 Json ports() {
@@ -71,19 +76,20 @@ Json design_schema() {
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
                  {"title", "talkgraph study"},
                  {"description", "What a study shows and asks; docs/study.md explains"}};
-  schema.update(object({{"$schema", text("this schema")},
-                        {"description", text("what it is to find out")},
-                        {"extends", text("a study that this one is laid over: members are merged, null takes one away")},
-                        {"title", text("heading of the page")},
-                        {"seed", whole(0, "of what is chosen")},
-                        {"speakers", texts("names of the runs, in order; empty: as their reports are called")},
-                        {"draw", text("graph that draws the clips")},
-                        {"take", ports()},
-                        {"consent", texts("paragraphs of the first page")},
-                        {"profile", named(question(), "asked of a person; the last option of each is not to say")},
-                        {"split_by", text("question of the profile by which answers are compared")},
-                        {"tests", named(test(), "in any order: each person has one of their own")},
-                        {"thanks", texts("paragraphs of the last page")}}));
+  schema.update(
+      object({{"$schema", text("this schema")},
+              {"description", text("what it is to find out")},
+              {"extends", text("a study that this one is laid over: members are merged, null takes one away")},
+              {"title", text("heading of the page")},
+              {"seed", whole(0, "of what is chosen")},
+              {"speakers", texts("names of the runs, in order; empty: as their reports are called")},
+              {"draw", text("graph that draws the clips")},
+              {"take", ports()},
+              {"consent", texts("paragraphs of the first page")},
+              {"profile", named(question(), "asked of a person; the last option of each is not to say")},
+              {"split_by", text("question of the profile by which answers are compared")},
+              {"tests", named(test(), "in any order: each person has one of their own")},
+              {"thanks", texts("paragraphs of the last page")}}));
   schema["anyOf"] = {{{"required", {"extends"}}},
                      {{"required", {"title", "consent", "thanks", "draw", "take", "tests"}}}};
   return schema;

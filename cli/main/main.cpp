@@ -275,7 +275,8 @@ int main(int argc, char** argv) {
   diff_app->add_option("other", other, "another one (default: the same, with --set)");
   diff_app->add_option("--set", sets, "path=value, in the second graph")->take_all()->allow_extra_args(false);
 
-  auto* schema_app = app.add_subcommand("schema", "write the JSON Schema of graphs, experiments or studies, for editors");
+  auto* schema_app =
+      app.add_subcommand("schema", "write the JSON Schema of graphs, experiments or studies, for editors");
   bool of_experiments = false, of_studies = false;
   auto* of_experiments_flag = schema_app->add_flag("--experiment", of_experiments, "of experiment files");
   schema_app->add_flag("--study", of_studies, "of study files")->excludes(of_experiments_flag);
@@ -314,7 +315,9 @@ int main(int argc, char** argv) {
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
       if (*diff_app) return diff(graph, other.empty() ? graph : other, registry, sets);
       if (*schema_app)
-        return deliver((of_experiments ? experiment_schema() : of_studies ? study::design_schema() : json_schema(registry))
+        return deliver((of_experiments ? experiment_schema()
+                        : of_studies   ? study::design_schema()
+                                       : json_schema(registry))
                                .dump(1) +
                            "\n",
                        output),

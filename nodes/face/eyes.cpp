@@ -160,8 +160,9 @@ void describe(Description<MakeEyes>& d) {
       .doc("how far lids shut, standard deviations of the gap between them in the model; they stop where they meet");
   d.param("points", &MakeEyes::points)
       .at_least(0)
-      .doc("landmarks of the eyes; empty: they, the nose and the lids are those of the point scheme, of one that has no "
-           "eyes brows and nose around them");
+      .doc(
+          "landmarks of the eyes; empty: they, the nose and the lids are those of the point scheme, of one that has no "
+          "eyes brows and nose around them");
   d.param("nose", &MakeEyes::nose).at_least(0).doc("landmarks that go with them, so that proportions stay");
   d.param("upper_lids", &MakeEyes::upper_lids).at_least(0).doc("landmarks on the upper lids");
   d.param("lower_lids", &MakeEyes::lower_lids).at_least(0).doc("landmarks below those, in the same order");

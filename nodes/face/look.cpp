@@ -61,9 +61,8 @@ void Looks::prepare_eyes() {
     }
   const auto [top, bottom, fade] = eye_band(raster.points, eyes_.points);
   for (std::size_t i = 0; i < raster.x.size(); ++i)
-    eye_share_.at<float>(raster.y[i], raster.x[i]) =
-        static_cast<float>(smooth_step(top - fade, top, raster.y[i]) *
-                           (1 - smooth_step(bottom, bottom + fade, raster.y[i])));
+    eye_share_.at<float>(raster.y[i], raster.x[i]) = static_cast<float>(
+        smooth_step(top - fade, top, raster.y[i]) * (1 - smooth_step(bottom, bottom + fade, raster.y[i])));
 }
 
 void Looks::prepare_mouths() {

@@ -90,9 +90,7 @@ struct Scene {
 class FaceReader final : public VideoSource::Reader {
  public:
   explicit FaceReader(const Scene& scene)
-      : looks_(scene.looks),
-        reader_(scene.looks),
-        brush_(looks_->model(), scene.settings) {}
+      : looks_(scene.looks), reader_(scene.looks), brush_(looks_->model(), scene.settings) {}
   bool next(cv::Mat& frame) override {
     const Look* look = reader_.next();
     if (look) frame = brush_(*look);

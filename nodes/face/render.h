@@ -13,8 +13,9 @@ namespace talkgraph {
 /// The face of appearance parameters alone, at the mean pose on a plain
 /// background, with average light (Eqn 3.18); with other eyes or real mouths if they are given. One pixel of the mean
 /// shape is `zoom` pixels, or as many as fit into pictures of a given size. Of the lower part all rows below the eyes
-/// are seen. What is shown where depends on the model alone. Rendered when read. Throws std::runtime_error if parameters,
-/// eyes or mouths do not fit the model or each other, or the lower part is asked for and nobody knows where the eyes are.
+/// are seen. What is shown where depends on the model alone. Rendered when read. Throws std::runtime_error if
+/// parameters, eyes or mouths do not fit the model or each other, or the lower part is asked for and nobody knows where
+/// the eyes are.
 struct RenderFace {
   double zoom = 2;
   int background = 128;  ///< grey level
