@@ -8,6 +8,7 @@
 #include "nodes/corpus/manifest.h"
 #include "nodes/corpus/parts.h"
 #include "nodes/corpus/pick.h"
+#include "nodes/corpus/pick_track.h"
 #include "nodes/corpus/register.h"
 #include "nodes/corpus/select.h"
 #include "nodes/corpus/splits.h"
@@ -343,6 +344,17 @@ TEST(Pick, TakesTheRecordingsNamed) {
   EXPECT_TRUE((Pick{{"a", "b"}}(recording)));
   EXPECT_FALSE((Pick{{"a"}}(recording)));
   EXPECT_FALSE(Pick{}(recording));
+}
+
+TEST(PickTrack, TakesTheTracksOfTheRecordingsNamed) {
+  Context context;
+  context.item = "b";
+  Track track;
+  track.values = Eigen::MatrixXd::Ones(2, 3);
+  const auto picked = PickTrack{{"a", "b"}}(track, context);
+  ASSERT_TRUE(picked);
+  EXPECT_EQ(picked->values, track.values);
+  EXPECT_FALSE((PickTrack{{"a"}}(track, context)));
 }
 
 Collected<Recording> of_splits(const std::vector<std::string>& splits) {

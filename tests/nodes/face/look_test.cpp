@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "nodes/face/base_clip.h"
 #include "nodes/face/build.h"
@@ -181,6 +182,76 @@ TEST(Eyes, AreFoundByThePointScheme) {
   node.reach = 1000;
   const Track longer{Eigen::MatrixXd::Zero(1000, 1), Rational(1000), 0, {}};
   EXPECT_NEAR(make(node, m, longer).parameters.values.maxCoeff(), gap / 4, 0.01 * gap);
+}
+
+TEST(Eyes, OfASchemeWithoutThemLieBetweenBrowsAndNose) {
+  AppearanceModel m;
+  m.scheme = "face56";
+  const auto scheme = *find_scheme("face56");
+  m.mean_shape = scheme.mean;
+  m.combined_variances = Eigen::VectorXd::Ones(1);
+  m.shape_per_mode = Eigen::MatrixXd::Zero(2 * m.points(), 1);
+  MakeEyes node;
+  node.source = EyeSource::still;
+  const Track track{Eigen::MatrixXd::Zero(200, 1), Rational(25), 0.02, {}};
+  const auto points = make(node, m, track).points;
+  for (const char* brow : {"left_brow", "right_brow"})
+    for (const int i : scheme.named(brow)) EXPECT_EQ(std::count(points.begin(), points.end(), i), 1);
+  const double nose = m.mean_shape.col(1)(scheme.named("nose_base")).minCoeff(),
+               brows = m.mean_shape.col(1)(scheme.named("left_brow")).maxCoeff();
+  EXPECT_GT(below_eyes(m), brows);
+  EXPECT_LT(below_eyes(m), nose);
+  node.source = EyeSource::blinking;
+  EXPECT_THAT(complaint([&] { make(node, m, track); }), testing::HasSubstr("name the landmarks of the lids"));
+}
+
+/// The model, its points known by name.
+AppearanceModel named_model() {
+  AppearanceModel m = model();
+  Json mean = Json::array();
+  for (const auto& point : m.mean_shape.rowwise()) mean.push_back({point.x(), point.y()});
+  m.scheme = Json{
+      {"name", "synthetic"},
+      {"groups",
+       {{{"name", "left_eye"}, {"points", {16, 17, 18, 19}}}, {{"name", "right_eye"}, {"points", {20, 21, 22, 23}}}}},
+      {"mean",
+       mean}}.dump();
+  return m;
+}
+
+cv::Rect drawn(const cv::Mat& picture) {
+  cv::Mat differs = picture != cv::Scalar::all(128), any;
+  cv::cvtColor(differs, any, cv::COLOR_BGR2GRAY);
+  return cv::boundingRect(any);
+}
+
+TEST(Render, FillsSquarePictures) {
+  RenderFace node;
+  node.size = 120;
+  const Track still{Eigen::MatrixXd::Zero(1, model().modes()), Rational(25), 0.02, {}};
+  const auto picture = node(model(), still, nullptr, nullptr).read_all().at(0);
+  ASSERT_EQ(picture.size(), cv::Size(120, 120));
+  const auto face = drawn(picture);
+  EXPECT_NEAR(std::max(face.width, face.height), 100, 3);
+  EXPECT_NEAR(face.x + 0.5 * face.width, 60, 2);
+  EXPECT_NEAR(face.y + 0.5 * face.height, 60, 2);
+}
+
+TEST(Render, ShowsWhatLiesBelowTheEyes) {
+  const auto m = named_model();
+  RenderFace node;
+  node.size = 120;
+  node.part = FacePart::lower;
+  const Track moving = random_track(m, 3, 1);
+  for (const auto& picture : node(m, moving, nullptr, nullptr).read_all()) {
+    const auto face = drawn(picture);
+    const Eigen::RowVector2d low = m.mean_shape.colwise().minCoeff(), high = m.mean_shape.colwise().maxCoeff();
+    const double zoom = 100 / std::max(high.x() - low.x(), high.y() - below_eyes(m));
+    EXPECT_NEAR(face.y, 60 - 0.5 * zoom * (high.y() - below_eyes(m)), 1.5);
+    EXPECT_GT(face.width, 60);
+  }
+  EXPECT_GT(below_eyes(m), m.mean_shape.col(1)(left_and_right_eye).maxCoeff());
+  EXPECT_THAT(complaint([&] { node(model(), moving, nullptr, nullptr); }), testing::HasSubstr("synthetic"));
 }
 
 TEST(LidClosure, GoesDownFasterThanUp) {

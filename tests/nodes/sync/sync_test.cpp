@@ -10,6 +10,7 @@
 #include "nodes/sync/median.h"
 #include "nodes/sync/polyphase.h"
 #include "nodes/sync/quadrature.h"
+#include "nodes/sync/together.h"
 
 namespace talkgraph {
 namespace {
@@ -271,6 +272,25 @@ TEST(Sync, RefusesEmptyAndBrokenTracks) {
   t.values(3, 0) = NAN;
   EXPECT_THROW(Polyphase{}(t, nullptr), std::runtime_error);
   EXPECT_THROW(Quadrature{}(t, nullptr), std::runtime_error);
+}
+
+TEST(Together, CutsTracksToTheFramesThatBothHave) {
+  Track a = tone(1, 12), b = tone(2, 10);
+  a.lost = {3, 9, 10, 11};
+  Context context;
+  const auto both = Together{}(a, b, context);
+  EXPECT_EQ(both.a.values, a.values.topRows(10));
+  EXPECT_EQ(both.a.lost, (std::vector<std::int64_t>{3, 9}));
+  EXPECT_EQ(both.b.values, b.values);
+  EXPECT_EQ(Together{}(b, a, context).b.frames(), 10);
+}
+
+TEST(Together, RefusesTracksThatAreUnlike) {
+  Context context;
+  EXPECT_THROW(Together{}(tone(1, 13), tone(1, 10), context), std::runtime_error);
+  Track other = tone(1, 10);
+  other.rate = ntsc;
+  EXPECT_THROW(Together{}(tone(1, 10), other, context), std::runtime_error);
 }
 
 }  // namespace
