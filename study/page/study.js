@@ -127,6 +127,7 @@ function seen_whole() {
 }
 
 function ended() {
+  if (!note) return;
   if (!seen_whole()) return update();
   note.plays = Math.min(note.plays + 1, most_plays);
   keep_note();
@@ -199,6 +200,7 @@ function chose(event) {
 
 /** What can be done now. */
 function update() {
+  if (!note) return;
   const video = $("video"), playing = !video.paused && !video.ended;
   $("lock").disabled = !note.plays;
   $("replay").disabled = playing || !video.src;
@@ -209,7 +211,7 @@ function update() {
 async function show_clip() {
   const { test } = state, [clip] = test.clips;
   const kept = recall(note_key);
-  note = kept?.clip === clip.id && !kept.sent ? kept : { clip: clip.id, plays: 0, seconds: 0, chosen: {} };
+  note = kept?.clip === clip.id ? kept : { clip: clip.id, plays: 0, seconds: 0, chosen: {} };
   show("clip");
   $("stage").setAttribute("aria-label", `Clip ${test.position + 1} of ${test.position + test.clips.length}`);
   $("questions").replaceChildren(...test.questions.map((q) =>
@@ -231,22 +233,21 @@ async function show_clip() {
 
 async function next() {
   keep_note();
-  since = null;
   const sent = { clip: note.clip, plays: note.plays, answers: note.chosen };
+  note = since = null;
+  remember(note_key, { sent });
   $("video").pause();
   $("lock").disabled = $("next").disabled = $("replay").disabled = true;
-  URL.revokeObjectURL(await load(note.clip));
-  clips.delete(note.clip);
   await send(sent);
+  URL.revokeObjectURL(await load(sent.clip));
+  clips.delete(sent.clip);
 }
 
 /** Sends answers until the server has them. */
 async function send(sent) {
-  remember(note_key, { clip: sent.clip, sent });
   say("Saving …");
   const { ok, answer } = await post("answers", sent);
   remember(note_key, null);
-  note = null;
   go(ok ? answer : await ask());
 }
 
@@ -337,7 +338,7 @@ function choose(digit) {
 function press(event) {
   if (event.ctrlKey || event.altKey || event.metaKey) return;
   const { key, target } = event, own = target.closest("button, a");
-  if (!$("intro").hidden && key === "Enter" && !own && !event.repeat) $("begin").click();
+  if (!$("intro").hidden && key === "Enter" && !own && !event.repeat) return $("begin").click();
   if ($("clip").hidden) return;
   if (key >= "1" && key <= "9" && key.length === 1) {
     choose(Number(key));
@@ -362,7 +363,7 @@ function listen() {
   const video = $("video");
   video.addEventListener("ended", ended);
   video.addEventListener("play", update);
-  video.addEventListener("pause", () => { if (note) update(); });
+  video.addEventListener("pause", update);
   video.addEventListener("ratechange", () => { video.playbackRate = 1; });
   video.addEventListener("error", () => { if (note && video.src) try_other_format(); });
   video.addEventListener("contextmenu", (event) => event.preventDefault());

@@ -8,7 +8,7 @@ namespace talkgraph::study {
 namespace {
 
 Clip clip(const std::string& test, int number, bool synthetic, const std::string& eyes) {
-  return {fmt::format("{}{}", test, number), "Ann", fmt::format("secret{}", number), synthetic, eyes, 0.4, {}, -1};
+  return {fmt::format("{}{}", test, number), "Ann", fmt::format("secret{}", number), synthetic, eyes, 0.8, {}, -1};
 }
 
 Test turing() {
