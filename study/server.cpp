@@ -1,5 +1,6 @@
 #include "study/server.h"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 
 #include <fstream>
@@ -54,7 +55,9 @@ std::string read_file(const std::filesystem::path& file) {
 }
 
 bool is_loopback(const std::string& name) {
-  return name == "localhost" || name.starts_with("127.") || name == "::1" || name == "[::1]";
+  in_addr address{};
+  if (inet_pton(AF_INET, name.c_str(), &address) == 1) return ntohl(address.s_addr) >> 24 == 127;
+  return name == "localhost" || name == "::1" || name == "[::1]";
 }
 
 /// "https://study.example:81" of "https://study.example:81/faces".

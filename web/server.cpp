@@ -105,7 +105,9 @@ Server::Server(ServerOptions options) : options_(std::move(options)) {
 
 std::optional<int> Server::bind(const std::string& address, int port) {
   const int got = port == 0 ? bind_to_any_port(address) : bind_to_port(address, port) ? port : -1;
-  return got < 0 ? std::nullopt : std::optional(got);
+  if (got < 0) return std::nullopt;
+  ::listen(svr_sock_, SOMAXCONN);  // The library lets five wait.
+  return got;
 }
 
 bool Server::process_and_close_socket(socket_t socket) {
