@@ -7,6 +7,7 @@
 #include <array>
 #include <ctime>
 #include <system_error>
+#include <utility>
 
 #include "study/session.h"
 
@@ -84,6 +85,12 @@ void make(Database& database, const Study& study) {
   all.commit();
 }
 
+Database made(const std::filesystem::path& file, const Study& study) {
+  Database database(file, Database::Access::write);
+  make(database, study);
+  return database;
+}
+
 void check(const Database& database, const Study& study, const std::string& file) {
   if (number(database, "PRAGMA user_version") != layout)
     throw std::runtime_error(fmt::format("{}: is no file of answers", file));
@@ -137,27 +144,54 @@ std::vector<Answer> read_given(const Database& database) {
 }  // namespace
 
 Store::Store(const std::filesystem::path& folder, const Study& study)
-    : database_(folder / file_name, Database::Access::write) {
-  make(database_, study);
-  check(database_, study, (folder / file_name).string());
-  start_ = noted(database_, "start").value();
-  report_ = noted(database_, "report").value();
+    : database_(made(folder / file_name, study)), reader_(folder / file_name, Database::Access::read) {
+  check(reader_, study, (folder / file_name).string());
+  start_ = noted(reader_, "start").value();
+  report_ = noted(reader_, "report").value();
+}
+
+void Store::change(const std::function<void()>& make) {
+  Change mine{make};
+  std::unique_lock lock(mutex_);
+  waiting_.push_back(&mine);
+  turn_.wait(lock, [&] { return mine.done || !busy_; });
+  if (!mine.done) {
+    busy_ = true;
+    const auto all = std::exchange(waiting_, {});
+    lock.unlock();
+    make_all(all);
+    lock.lock();
+    for (auto* one : all) one->done = true;
+    busy_ = false;
+    turn_.notify_all();
+  }
+  if (mine.failure) std::rethrow_exception(mine.failure);
+}
+
+void Store::make_all(const std::vector<Change*>& changes) {
+  try {
+    Transaction all(database_);
+    for (const auto* one : changes) one->make();
+    all.commit();
+  } catch (...) {
+    for (auto* one : changes) one->failure = std::current_exception();
+  }
 }
 
 std::optional<std::string> Store::invite(bool agreed) {
-  const std::lock_guard lock(mutex_);
-  Transaction all(database_);
-  if (number(database_, "SELECT count(*) FROM participant") >= most_participants) return std::nullopt;
-  const auto token = random_token();
-  database_.run("INSERT INTO participant (token, seed, agreed) VALUES (?, ?, ?)", token, random_bytes<std::int64_t>(),
-                agreed ? now() : 0);
-  all.commit();
+  std::optional<std::string> token;
+  change([&] {
+    if (number(database_, "SELECT count(*) FROM participant") >= most_participants) return;
+    token = random_token();
+    database_.run("INSERT INTO participant (token, seed, agreed) VALUES (?, ?, ?)", *token,
+                  random_bytes<std::int64_t>(), agreed ? now() : 0);
+  });
   return token;
 }
 
 std::optional<Taker> Store::find(const std::string& token) const {
-  const std::lock_guard lock(mutex_);
-  Statement row(database_,
+  const std::lock_guard lock(reading_);
+  Statement row(reader_,
                 "SELECT id, seed, agreed, started, (SELECT count(DISTINCT clip) FROM answer WHERE participant = id)"
                 " FROM participant WHERE token = ?",
                 token);
@@ -167,37 +201,36 @@ std::optional<Taker> Store::find(const std::string& token) const {
 }
 
 void Store::agree(const Taker& taker) {
-  const std::lock_guard lock(mutex_);
-  database_.run("UPDATE participant SET agreed = ? WHERE id = ? AND agreed = 0", now(), taker.id);
+  change([&] { database_.run("UPDATE participant SET agreed = ? WHERE id = ? AND agreed = 0", now(), taker.id); });
 }
 
 void Store::keep_profile(const Taker& taker, const std::map<std::string, int>& profile) {
-  const std::lock_guard lock(mutex_);
-  Transaction all(database_);
-  database_.run("UPDATE participant SET started = ? WHERE id = ? AND agreed > 0 AND started = 0", now(), taker.id);
-  if (sqlite3_changes(database_.get()) == 0) return;
-  for (const auto& [question, option] : profile)
-    database_.run("INSERT INTO profile VALUES (?, ?, ?)", taker.id, question, option);
-  all.commit();
+  change([&] {
+    database_.run("UPDATE participant SET started = ? WHERE id = ? AND agreed > 0 AND started = 0", now(), taker.id);
+    if (sqlite3_changes(database_.get()) == 0) return;
+    for (const auto& [question, option] : profile)
+      database_.run("INSERT INTO profile VALUES (?, ?, ?)", taker.id, question, option);
+  });
 }
 
 bool Store::keep(const Taker& taker, std::size_t clips, const std::vector<Answer>& answers, bool last) {
-  const std::lock_guard lock(mutex_);
-  Transaction all(database_);
-  const auto before = number(database_, "SELECT count(DISTINCT clip) FROM answer WHERE participant = ?", taker.id);
-  if (static_cast<std::size_t>(before) != clips) return false;
-  for (const auto& a : answers)
-    database_.run("INSERT INTO answer VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", taker.id, a.test, a.clip, a.question,
-                  a.option, a.position, a.plays, a.seconds, now());
-  if (last) database_.run("UPDATE participant SET finished = ? WHERE id = ?", now(), taker.id);
-  all.commit();
-  return true;
+  bool kept = false;
+  change([&] {
+    const auto before = number(database_, "SELECT count(DISTINCT clip) FROM answer WHERE participant = ?", taker.id);
+    kept = static_cast<std::size_t>(before) == clips;
+    if (!kept) return;
+    for (const auto& a : answers)
+      database_.run("INSERT INTO answer VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", taker.id, a.test, a.clip, a.question,
+                    a.option, a.position, a.plays, a.seconds, now());
+    if (last) database_.run("UPDATE participant SET finished = ? WHERE id = ?", now(), taker.id);
+  });
+  return kept;
 }
 
 Store::Counts Store::counts() const {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(reading_);
   Statement row(
-      database_,
+      reader_,
       "SELECT count(*), total(started > 0), total(finished > 0), (SELECT count(*) FROM answer) FROM participant");
   row.step();
   return {row.integer(0), row.integer(1), row.integer(2), row.integer(3)};

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -23,9 +26,9 @@ struct Taker {
   std::size_t clips = 0;   ///< answered
 };
 
-/// What people answer, in FOLDER/answers.db. Every change is one transaction, on the disk when the call returns; one
-/// that was made already changes nothing. Any number of threads may call. Throws DatabaseError where the database
-/// cannot be used: nothing is changed then.
+/// What people answer, in FOLDER/answers.db. Every change is made whole or not at all and on the disk when the call
+/// returns; one that was made already changes nothing. Any number of threads may call. Throws DatabaseError where the
+/// database cannot be used: nothing is changed then.
 class Store {
  public:
   /// Makes the database with the first call. Throws std::runtime_error if it was begun with another study: other tests,
@@ -52,8 +55,24 @@ class Store {
   Counts counts() const;
 
  private:
-  mutable std::mutex mutex_;
-  mutable Database database_;
+  struct Change {
+    const std::function<void()>& make;
+    bool done = false;
+    std::exception_ptr failure = nullptr;
+  };
+
+  /// Changes that wait at the same time share a transaction, and so a sync of the disk.
+  void change(const std::function<void()>& make);
+  void make_all(const std::vector<Change*>& changes);
+
+  Database database_;
+  std::mutex mutex_;
+  std::condition_variable turn_;
+  std::vector<Change*> waiting_;
+  bool busy_ = false;
+
+  mutable std::mutex reading_;
+  Database reader_;
   std::string start_, report_;
 };
 

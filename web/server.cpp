@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <poll.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <thread>
 
@@ -26,13 +28,14 @@ class Connection final : public httplib::Stream {
     close(socket_);
   }
 
-  bool is_readable() const override { return wait(POLLIN); }
+  bool is_readable() const override { return taken_ < there_ || wait(POLLIN); }
   bool is_writable() const override { return wait(POLLOUT); }
   ssize_t read(char* to, std::size_t size) override {
-    if (size > left_ || !is_readable()) return -1;
-    const auto n = recv(socket_, to, size, 0);
-    if (n > 0) left_ -= static_cast<std::size_t>(n);
-    return n;
+    if (taken_ == there_ && !fill()) return -1;
+    const auto n = std::min(size, there_ - taken_);
+    std::copy_n(bytes_.data() + taken_, n, to);
+    taken_ += n;
+    return static_cast<ssize_t>(n);
   }
   ssize_t write(const char* from, std::size_t size) override {
     if (!answers_) until_ = Clock::now() + time_to_take;
@@ -45,6 +48,16 @@ class Connection final : public httplib::Stream {
   socket_t socket() const override { return socket_; }
 
  private:
+  /// The library asks for single bytes.
+  bool fill() {
+    if (left_ == 0 || !is_readable()) return false;
+    const auto n = recv(socket_, bytes_.data(), std::min(bytes_.size(), left_), 0);
+    if (n <= 0) return false;
+    left_ -= static_cast<std::size_t>(n);
+    taken_ = 0;
+    there_ = static_cast<std::size_t>(n);
+    return true;
+  }
   bool wait(short event) const {
     pollfd what{socket_, event, 0};
     while (!stop_ && Clock::now() < until_)
@@ -57,6 +70,8 @@ class Connection final : public httplib::Stream {
   const std::atomic<bool>& stop_;
   Clock::time_point until_ = Clock::now() + time_to_ask;
   bool answers_ = false;
+  std::array<char, 4096> bytes_;
+  std::size_t taken_ = 0, there_ = 0;
 };
 
 httplib::Headers headers(const std::string& policy) {

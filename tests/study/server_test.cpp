@@ -56,7 +56,8 @@ struct ServerTest : testing::Test {
   }
   std::vector<std::string> kept() const {
     std::vector<std::string> all;
-    for (const auto& a : read_answers(folder).answers) all.push_back(fmt::format("{} {} {}", a.clip, a.question, a.option));
+    for (const auto& a : read_answers(folder).answers)
+      all.push_back(fmt::format("{} {} {}", a.clip, a.question, a.option));
     return all;
   }
 };

@@ -60,7 +60,8 @@ Reply ask(int port, const std::string& path, const Json& body) {
 std::vector<Answer> take_study(int port, const std::string& start_path, std::uint64_t seed,
                                const std::function<void(double)>& saved) {
   Random random(seed);
-  const auto path = "/" + expect(201, ask(port, start_path + "/consent", Json::object())).json["link"].get<std::string>();
+  const auto path =
+      "/" + expect(201, ask(port, start_path + "/consent", Json::object())).json["link"].get<std::string>();
   Json state = expect(200, ask(port, path + "/state")).json;
   state = expect(200, ask(port, path + "/profile", profile_of(state, random))).json;
   std::vector<Answer> given;

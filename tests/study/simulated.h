@@ -21,7 +21,8 @@ Reply ask(int port, const std::string& path, const Json& body = nullptr);
 /// Somebody who takes the study at once, without looking: agrees, gives a profile, loads each clip, answers at random.
 /// Now and then a save comes twice, the second time with other answers. Gives what was saved first. `saved` is told of
 /// the seconds that each save took.
-std::vector<Answer> take_study(int port, const std::string& start_path, std::uint64_t seed,
-                               const std::function<void(double)>& saved = [](double) {});
+std::vector<Answer> take_study(
+    int port, const std::string& start_path, std::uint64_t seed,
+    const std::function<void(double)>& saved = [](double) {});
 
 }  // namespace talkgraph::study

@@ -1,0 +1,72 @@
+// How long a save of the study's server takes when a hundred people take the study at once, over loopback.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "graph/random.h"
+#include "study/store.h"
+#include "tests/study/running_server.h"
+#include "tests/study/simulated.h"
+#include "tests/study/small_study.h"
+
+namespace talkgraph::bench {
+
+constexpr int people = 100;
+
+/// Seconds from the first byte of a request to the last of its answer, in order; the person rests `rest` seconds on
+/// average after each.
+std::vector<double> saves(const std::filesystem::path& folder, double rest) {
+  study::write_small_study(folder);
+  std::vector<double> all;
+  {
+    study::RunningServer server(folder);
+    std::mutex mutex;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < people; ++i)
+      threads.emplace_back([&, i] {
+        Random random(static_cast<std::uint64_t>(i));
+        const auto pause = [&] {
+          std::this_thread::sleep_for(std::chrono::duration<double>(2 * rest * random.uniform()));
+        };
+        pause();
+        study::take_study(server->port(), study::RunningServer::path(server->start_url()), i, [&](double seconds) {
+          {
+            const std::lock_guard lock(mutex);
+            all.push_back(seconds);
+          }
+          pause();
+        });
+      });
+    for (auto& thread : threads) thread.join();
+  }
+  const auto kept = study::read_answers(folder);
+  if (kept.participants.size() != people) throw std::runtime_error("people are missing");
+  std::filesystem::remove_all(folder);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+void compare() {
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("talkgraph-bench-study-{}", getpid());
+  fmt::print("Saves of {} people at once, milliseconds:\n\n", people);
+  fmt::print("| rest between saves | saves | median | 99 of 100 within | longest |\n|---|---|---|---|---|\n");
+  for (const double rest : {2.0, 0.5, 0.0}) {
+    const auto all = saves(folder, rest);
+    fmt::print("| {} s | {} | {:.0f} | {:.0f} | {:.0f} |\n", rest, all.size(), 1000 * all[all.size() / 2],
+               1000 * all[all.size() * 99 / 100], 1000 * all.back());
+  }
+}
+
+}  // namespace talkgraph::bench
+
+int main() {
+  try {
+    talkgraph::bench::compare();
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "bench_study: {}\n", e.what());
+    return 1;
+  }
+}
