@@ -10,7 +10,7 @@ TEST(Register, DescribesEveryNode) {
   Registry registry;
   register_sync(registry);
   EXPECT_THAT(registry.names(), testing::ElementsAre("sync.direct", "sync.frames", "sync.median", "sync.polyphase",
-                                                     "sync.quadrature", "sync.shift"));
+                                                     "sync.quadrature", "sync.shift", "sync.together"));
 }
 
 }  // namespace
