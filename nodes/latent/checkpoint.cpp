@@ -6,11 +6,11 @@
 
 namespace talkgraph {
 
-Checkpoint::Checkpoint(const std::string& folder, const Key& of, std::function<void(Archive&)> fields)
+Checkpoint::Checkpoint(const std::string& folder, const std::function<Key()>& of, std::function<void(Archive&)> fields)
     : fields_(std::move(fields)) {
   if (folder.empty()) return;
   std::filesystem::create_directories(folder);
-  path_ = std::filesystem::path(folder) / (of.str() + ".h5");
+  path_ = std::filesystem::path(folder) / (of().str() + ".h5");
 }
 
 bool Checkpoint::load(const std::string& subject, const Context& context) {
@@ -26,14 +26,14 @@ bool Checkpoint::load(const std::string& subject, const Context& context) {
   }
 }
 
-void Checkpoint::save_now_and_then() {
-  if (path_.empty() || std::chrono::steady_clock::now() - saved_ < std::chrono::seconds(10)) return;
-  save();
-  saved_ = std::chrono::steady_clock::now();
+void Checkpoint::between_steps(const Context& context) {
+  if (context.cancelled() || std::chrono::steady_clock::now() - saved_ >= std::chrono::seconds(10)) save();
+  context.check_cancelled();
 }
 
 void Checkpoint::save() {
   if (!path_.empty()) write_hdf5(path_.string(), fields_);
+  saved_ = std::chrono::steady_clock::now();
 }
 
 void Checkpoint::remove() {

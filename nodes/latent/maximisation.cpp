@@ -42,10 +42,12 @@ OptimiserState Maximisation::maximise(const std::string& subject, Maximand& maxi
   const auto started = std::chrono::steady_clock::now();
   OptimiserState state;
   bool noise_held = false;
-  Checkpoint saved(checkpoint, checkpoint.empty() ? Key{} : key_of(subject, maximand, start, *this), [&](Archive& ar) {
-    ar("state", state);
-    ar("noise_held", noise_held);
-  });
+  Checkpoint saved(
+      checkpoint, [&] { return key_of(subject, maximand, start, *this); },
+      [&](Archive& ar) {
+        ar("state", state);
+        ar("noise_held", noise_held);
+      });
   if (!saved.load(subject, context)) {
     state = {};
     state.parameters = start;
@@ -55,9 +57,7 @@ OptimiserState Maximisation::maximise(const std::string& subject, Maximand& maxi
   const auto by = make_optimiser(optimiser);
   if (time_limit > 0) by->seconds = time_limit;
   by->on_iteration = [&](int i, double) {
-    saved.save_now_and_then();
-    if (context.cancelled()) saved.save();
-    context.check_cancelled();
+    saved.between_steps(context);
     context.progress(static_cast<double>(i) / iterations);
   };
   if (noise_held) {

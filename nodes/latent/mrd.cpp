@@ -205,19 +205,18 @@ Trained train_in_parts(const TrainMrd& node, const std::string& subject, Bayesia
                        Random& random) {
   StochasticTraining training = in_parts(node, random.bits());
   StochasticTraining::State state;
-  Checkpoint saved(node.checkpoint, node.checkpoint.empty() ? Key{} : key_of(training, subject, objective),
-                   [&](Archive& ar) {
-                     ar("state", state);
-                     for (auto& stream : objective.streams()) ar(stream.name(), stream.inducing_posterior());
-                   });
+  Checkpoint saved(
+      node.checkpoint, [&] { return key_of(training, subject, objective); },
+      [&](Archive& ar) {
+        ar("state", state);
+        for (auto& stream : objective.streams()) ar(stream.name(), stream.inducing_posterior());
+      });
   if (!saved.load(subject, context)) {
     state = {};
     for (auto& stream : objective.streams()) stream.inducing_posterior() = {};
   }
   training.on_part = [&](double share) {
-    saved.save_now_and_then();
-    if (context.cancelled()) saved.save();
-    context.check_cancelled();
+    saved.between_steps(context);
     context.progress(share);
   };
   training(objective, state);
