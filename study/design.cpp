@@ -42,6 +42,8 @@ class Reader {
     need(json, "consent", out.consent, "study");
     need(json, "thanks", out.thanks, "study");
     need(json, "draw", out.draw, "study");
+    if (const auto* m = json.find("draw"); m && !std::filesystem::is_regular_file(out.draw.path))
+      diagnostics_.error(m->value.place, fmt::format("study: \"draw\": {} is not there", out.draw.path));
     may(json, "split_by", out.split_by, "study");
     may(json, "speakers", out.speakers, "study");
     may(json, "seed", out.seed, "study", {0, 9e15, false});

@@ -106,16 +106,17 @@ struct Batch {
 };
 
 std::vector<Batch> batches(const Study& study, const std::string& speaker) {
-  std::vector<Batch> out;
-  for (const auto& test : study.tests) {
-    std::map<std::pair<bool, std::string>, std::size_t> at;
+  std::map<std::string, Batch> by_name;
+  for (const auto& test : study.tests)
     for (const auto& clip : test.clips) {
       if (clip.speaker != speaker) continue;
-      const auto [place, is_new] = at.emplace(std::pair(clip.synthetic, clip.eyes), out.size());
-      if (is_new) out.push_back({fmt::format("study:{}", out.size()), &test, clip.synthetic, clip.eyes, {}});
-      out[place->second].clips.emplace(clip.sequence, clip.id);
+      const auto name = fmt::format("study:{}-{}{}{}", test.id, clip.synthetic ? "synthetic" : "real",
+                                    clip.eyes.empty() ? "" : "-", clip.eyes);
+      auto& batch = by_name.try_emplace(name, Batch{name, &test, clip.synthetic, clip.eyes, {}}).first->second;
+      batch.clips.emplace(clip.sequence, clip.id);
     }
-  }
+  std::vector<Batch> out;
+  for (auto& [name, batch] : by_name) out.push_back(std::move(batch));
   return out;
 }
 

@@ -79,6 +79,7 @@ TEST_F(DesignFile, IsRefusedWithPlaces) {
   EXPECT_THAT(complaint(R"("profile": { "age": { "options": ["old"] } })"), HasSubstr("at least two options"));
   EXPECT_THAT(complaint(R"("split_by": "naive")"), HasSubstr("did you mean \"native\""));
   EXPECT_THAT(complaint(R"("take": { "fase": "x.y" })"), HasSubstr("did you mean \"face\""));
+  EXPECT_THAT(complaint(R"("draw": "none.json")"), HasSubstr("none.json is not there"));
   EXPECT_THAT(complaint(R"("thanks": null)"), HasSubstr("\"thanks\" is missing"));
 }
 
