@@ -53,7 +53,7 @@ async function request(path, options, trouble) {
 
 async function post(path, body) {
   const options = { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
-  const response = await request(path, options, "Not saved yet: the server cannot be reached. Your answer is kept here; trying again …");
+  const response = await request(path, options, "Not saved yet. Your answer is kept here: trying again …");
   say("");
   return { ok: response.ok, answer: await response.json() };
 }

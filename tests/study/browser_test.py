@@ -101,6 +101,7 @@ class StudyTest(unittest.TestCase):
         self.browser.open(link)
         self.wait_page("consent")
         self.picture("consent")
+        self.assertLessEqual(*self.value("[document.documentElement.scrollWidth, innerWidth]"))
         self.browser.click("#agree")
         self.wait_page("profile")
         self.profile = {"age": 2, "native": 1}
@@ -209,6 +210,36 @@ class StudyTest(unittest.TestCase):
             else:
                 self.take_clip(True, replays=position % 2)
         self.check_all()
+
+    def label(self, selector):
+        """The name that a screen reader tells."""
+        element = self.browser.ask("POST", "/element", {"using": "css selector", "value": selector})
+        return self.browser.ask("GET", f"/element/{next(iter(element.values()))}/computedlabel")
+
+    def test_on_a_phone_and_for_screen_readers(self):
+        self.browser.ask("POST", "/goog/cdp/execute", {"cmd": "Emulation.setDeviceMetricsOverride", "params": {
+            "width": 360, "height": 740, "deviceScaleFactor": 1, "mobile": True}})
+        self.begin(self.server.links["start"])
+        self.assertTrue(self.value("document.activeElement.matches('#intro h2')"), "what is new is read out")
+        while self.value("state.test.questions.length") == 1:
+            self.browser.click("#begin")
+            while self.page() == "clip":
+                self.take_clip(False)
+        self.browser.click("#begin")
+        self.wait_page("clip")
+        self.assertTrue(self.value("document.activeElement.id === 'stage'"))
+        self.assertEqual(self.label("#stage"), "Clip 1 of 8")
+        self.assertIn("of 16 clips answered", self.label("#progress"))
+        self.seen()
+        self.assertEqual(self.status(), "Please answer.")
+        self.assertEqual(self.label(".question:focus"), "The articulation is")
+        self.assertEqual([self.label(f".question input[value='{i}']") for i in range(5)],
+                         ["bad", "poor", "fair", "good", "excellent"])
+        self.assertEqual(self.value("$('status').getAttribute('role')"), "status")
+        self.assertLessEqual(self.value("document.documentElement.scrollWidth"), 360)
+        heights = self.value("[...document.querySelectorAll('#clip .option, #clip button')].map(e => e.offsetHeight)")
+        self.assertGreaterEqual(min(heights), 44, "a finger meets it")
+        self.picture("phone")
 
     def reload_in_the_middle(self):
         """What was chosen and how often the clip ran is there again."""
