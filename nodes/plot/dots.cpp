@@ -10,7 +10,7 @@
 namespace talkgraph {
 namespace {
 
-constexpr double kTop = 28, kBottom = 42, kLegend = 28, kRow = 16, kGap = 12, kAxis = 260, kValue = 44;
+constexpr double kTop = 28, kBottom = 42, kLegend = 28, kRow = 16, kGap = 12, kAxis = 220, kValue = 44, kRight = 20;
 constexpr double kCharacter = 6.3;
 
 const char* colour_of(std::size_t series) { return plot_colours[series % plot_colours.size()]; }
@@ -23,7 +23,7 @@ double height_of(const DotPanel& panel) {
   return height;
 }
 
-std::string draw_dot(const Dot& dot, const Axis& axis, double y, const char* colour) {
+std::string draw_dot(const Dot& dot, const Axis& axis, double y, const char* colour, int decimals) {
   if (!std::isfinite(dot.value)) return svg_text(kAxis + kValue, y + 4, "end", "–");
   std::string out;
   if (std::isfinite(dot.low) && std::isfinite(dot.high))
@@ -32,7 +32,7 @@ std::string draw_dot(const Dot& dot, const Axis& axis, double y, const char* col
                     colour, 1.4);
   out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\"/>\n", axis.share(dot.value) * kAxis, y,
                      colour);
-  return out + svg_text(kAxis + kValue, y + 4, "end", fmt::format("{:.3g}", dot.value),
+  return out + svg_text(kAxis + kValue, y + 4, "end", fmt::format("{:.{}f}", dot.value, decimals),
                         fmt::format(" style=\"fill: {}\"", colour).c_str());
 }
 
@@ -48,14 +48,15 @@ std::string draw_grid(const DotPanel& panel, const Axis& axis, double h) {
   return out + svg_text(kAxis / 2, h + 33, "middle", panel.x_label);
 }
 
-std::string draw_panel(const DotPanel& panel) {
+std::string draw_panel(const DotPanel& panel, bool named) {
   const Axis axis = axis_over(panel.from, panel.to, 5);
   std::string out = draw_grid(panel, axis, height_of(panel) - kTop - kBottom);
   double y = 0;
   for (const auto& row : panel.rows) {
-    out += svg_text(-10, y + length_of(row) / 2 + 4, "end", row.name);
+    if (named) out += svg_text(-10, y + length_of(row) / 2 + 4, "end", row.name);
     for (std::size_t i = 0; i < row.dots.size(); ++i)
-      out += draw_dot(row.dots[i], axis, y + (kGap + kRow) / 2 + kRow * static_cast<double>(i), colour_of(i));
+      out += draw_dot(row.dots[i], axis, y + (kGap + kRow) / 2 + kRow * static_cast<double>(i), colour_of(i),
+                      panel.decimals);
     y += length_of(row);
   }
   return out;
@@ -77,18 +78,23 @@ std::string draw_dots(const std::string& title, const std::vector<std::string>& 
                       const std::vector<DotPanel>& panels, int columns) {
   const int n = static_cast<int>(panels.size());
   columns = std::clamp(columns, 1, std::max(n, 1));
-  std::size_t longest = 0;
-  double height = 0;
+  double height = 0, names = 0;
+  bool shared = true;
   for (const auto& panel : panels) {
     height = std::max(height, height_of(panel));
-    for (const auto& row : panel.rows) longest = std::max(longest, row.name.size());
+    for (const auto& row : panel.rows) names = std::max(names, kCharacter * static_cast<double>(row.name.size()) + 20);
+    shared = shared && std::equal(panel.rows.begin(), panel.rows.end(), panels[0].rows.begin(), panels[0].rows.end(),
+                                  [](const auto& a, const auto& b) { return a.name == b.name; });
   }
-  const double names = kCharacter * static_cast<double>(longest) + 20, width = names + kAxis + kValue + 16;
-  std::string out = svg_open(title, columns * width, kLegend + (n + columns - 1) / columns * height);
+  const double width = kAxis + kValue + kRight, beside = shared ? 0 : names;
+  std::string out =
+      svg_open(title, names + columns * (width + beside) - beside, kLegend + (n + columns - 1) / columns * height);
   out += draw_legend(series, names);
-  for (int i = 0; i < n; ++i)
-    out += svg_group(i % columns * width + names, kLegend + i / columns * height + kTop,
-                     draw_panel(panels[static_cast<std::size_t>(i)]));
+  for (int i = 0; i < n; ++i) {
+    const int column = i % columns;
+    out += svg_group(names + column * (width + beside), kLegend + i / columns * height + kTop,
+                     draw_panel(panels[static_cast<std::size_t>(i)], column == 0 || !shared));
+  }
   return out + "</svg>\n";
 }
 

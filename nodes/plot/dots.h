@@ -20,10 +20,12 @@ struct DotPanel {
   std::string title, x_label;
   double from = 0, to = 1;  ///< ends of the axis
   double reference = NAN;   ///< a dashed line there, such as chance
+  int decimals = 0;         ///< of the values written
   std::vector<Row> rows;
 };
 
-/// Panels beside and under each other with one legend for all; values are written beside the rows. SVG text that stands
+/// Panels beside and under each other with one legend for all; values are written beside the rows, the rows' names once
+/// where panels beside each other have the same. SVG text that stands
 /// alone or inside HTML; screen readers are told the title.
 std::string draw_dots(const std::string& title, const std::vector<std::string>& series,
                       const std::vector<DotPanel>& panels, int columns = 2);

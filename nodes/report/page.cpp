@@ -26,6 +26,7 @@ td small { color: #444; }
 .text, tbody th { text-align: left; white-space: normal; }
 tbody th { font-weight: normal; }
 tr { background: #fff; }
+tbody th.rows { font-weight: 600; padding-top: .8rem; }
 tbody tr:hover { background: #f4f4f4; }
 tr > :first-child { position: sticky; left: 0; background: inherit; min-width: 12rem; }
 svg { max-width: 100%; height: auto; }
@@ -33,6 +34,10 @@ svg { max-width: 100%; height: auto; }
 figure { margin: 0 0 1.5rem; }
 video, img { width: 100%; background: #000; }
 figcaption { color: #444; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(11rem, 1fr)); gap: 1.5rem; padding: 0; list-style: none; }
+.figures li { border-top: 3px solid #d55e00; padding-top: .5rem; }
+.figures strong { display: block; font-size: 2.2rem; line-height: 1.2; }
+.figures small { display: block; color: #555; }
 )";
 
 std::string number(double v) { return fmt::format("{:.4g}", v); }
@@ -126,6 +131,9 @@ std::string html_table(const std::string& name, const Table& table) {
   return out + "</tbody>\n</table></div>\n";
 }
 
+std::string heading_cell(const std::string& html, std::size_t columns) {
+  return fmt::format("<th scope=\"rowgroup\" colspan=\"{}\" class=\"rows\">{}</th>", columns, html);
+}
 std::string number_cell(const std::string& html) { return "<td>" + html + "</td>"; }
 std::string text_cell(const std::string& html) { return "<td class=\"text\">" + html + "</td>"; }
 
@@ -134,7 +142,9 @@ std::string html_table(const std::string& caption, const std::vector<std::string
   std::string out =
       fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr>", escape_markup(caption));
   for (std::size_t c = 0; c < head.size(); ++c) {
-    const bool text = !lines.empty() && lines[0][c].starts_with("<td class");
+    const bool text = std::any_of(lines.begin(), lines.end(), [&](const auto& line) {
+      return line.size() == head.size() && line[c].starts_with("<td class");
+    });
     out += fmt::format("<th scope=\"col\"{}>{}</th>", text ? " class=\"text\"" : "", escape_markup(head[c]));
   }
   out += "</tr></thead>\n<tbody>\n";

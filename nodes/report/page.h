@@ -20,9 +20,11 @@ std::string html_below(double low, double high, double p);
 /// A table with its title as caption; a column shares its cells with those that say more of it: "0.59 ± 0.08", and the
 /// interval and p below.
 std::string html_table(const std::string& name, const Table& table);
-/// A table of cells, which the two below make of HTML; a heading stands where the cells below it do.
+/// A table of cells, which the three below make of HTML; a heading stands where the cells below it do.
 std::string html_table(const std::string& caption, const std::vector<std::string>& head,
                        const std::vector<std::vector<std::string>>& lines);
+/// The only one of a line: heads the lines that follow.
+std::string heading_cell(const std::string& html, std::size_t columns);
 std::string number_cell(const std::string& html);
 std::string text_cell(const std::string& html);
 std::string html_plot(const Plot& plot);

@@ -12,18 +12,18 @@ namespace {
 
 constexpr ConfidenceInterval kUnknown{NAN, NAN};
 
-/// Of sorted values.
-double quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const double next = sorted[std::min(below + 1, sorted.size() - 1)];
-  return sorted[below] + (place - static_cast<double>(below)) * (next - sorted[below]);
-}
-
 }  // namespace
 
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double quantile_of(const std::vector<double>& sorted, double share) {
+  if (sorted.empty()) return NAN;
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const double next = sorted[std::min(below + 1, sorted.size() - 1)];
+  return sorted[below] + (place - static_cast<double>(below)) * (next - sorted[below]);
 }
 
 double deviation_of(const std::vector<double>& values) {
@@ -51,7 +51,7 @@ ConfidenceInterval bootstrap_interval(const std::vector<double>& values, double 
     mean = mean_of(drawn);
   }
   std::sort(means.begin(), means.end());
-  return {quantile(means, (1 - confidence) / 2), quantile(means, (1 + confidence) / 2)};
+  return {quantile_of(means, (1 - confidence) / 2), quantile_of(means, (1 + confidence) / 2)};
 }
 
 ConfidenceInterval wilson_interval(std::size_t part, std::size_t whole, double confidence) {

@@ -20,6 +20,8 @@ inline constexpr EnumNames<IntervalKind, 2> enum_names<IntervalKind>{
 
 /// NaN of nothing.
 double mean_of(const std::vector<double>& values);
+/// Of values in rising order, that below which a share of them lies, interpolated linearly; NaN of nothing.
+double quantile_of(const std::vector<double>& sorted, double share);
 /// Of a sample, that is divided by n − 1; NaN of fewer than two values.
 double deviation_of(const std::vector<double>& values);
 

@@ -85,6 +85,15 @@ TEST(StudentInterval, OfTheMean) {
   EXPECT_NEAR(deviation_of(kPlain), 1.5705625319186329, kTolerance);
 }
 
+TEST(Quantile, LiesBetweenItsNeighbours) {
+  const std::vector<double> values = {1, 2, 4, 8};
+  EXPECT_EQ(quantile_of(values, 0), 1);
+  EXPECT_EQ(quantile_of(values, 0.5), 3);
+  EXPECT_EQ(quantile_of(values, 0.75), 5);
+  EXPECT_EQ(quantile_of(values, 1), 8);
+  EXPECT_TRUE(std::isnan(quantile_of({}, 0.5)));
+}
+
 TEST(Intervals, SayNothingOfOneValue) {
   Random random(1);
   for (const std::vector<double>& few : {std::vector<double>{}, {3}}) {
