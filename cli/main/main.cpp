@@ -15,6 +15,7 @@
 #include "cli/samples.h"
 #include "cli/speak.h"
 #include "cli/study_make.h"
+#include "cli/study_report.h"
 #include "cli/study_serve.h"
 #include "experiment/experiment.h"
 #include "graph/output_file.h"
@@ -29,6 +30,14 @@ namespace {
 
 using namespace talkgraph;
 using namespace talkgraph::cli;
+
+/// Of an enum, for CLI11.
+template <class E>
+std::vector<std::pair<std::string, E>> names_of() {
+  std::vector<std::pair<std::string, E>> names;
+  for (const auto& entry : enum_names<E>.entries) names.emplace_back(entry.name, entry.value);
+  return names;
+}
 
 /// A graph file, or the graph that a model file keeps.
 std::optional<Graph> load(const std::string& file, const Registry& registry, const std::vector<std::string>& sets) {
@@ -250,6 +259,17 @@ int main(int argc, char** argv) {
   study_serve_app->add_option("--invite", study_serve.invite, "print so many new links, each for one person")
       ->check(CLI::Range(0, 10000));
 
+  StudyReportCommand study_report;
+  auto* study_report_app =
+      study_app->add_subcommand("report", "write what people answered: tables, tests, plots, a page");
+  study_report_app->add_option("folder", graph, "of the study")->required();
+  study_report_app->add_option("-o,--output", study_report.output, "folder (default: report/ in that of the study)");
+  study_report_app->add_flag("--finished-only", study_report.options.finished_only,
+                             "leave out the answers of people who have not finished");
+  study_report_app->add_option("--correction", study_report.options.correction, "of p-values for the number of tests")
+      ->transform(CLI::CheckedTransformer(names_of<Correction>()))
+      ->default_str("holm");
+
   auto* check_app = app.add_subcommand("check", "check graphs without running them");
   check_app->add_option("graphs", files, "graph files")->required();
   check_app->add_option("--set", sets, "path=value")->take_all()->allow_extra_args(false);
@@ -310,6 +330,7 @@ int main(int argc, char** argv) {
       if (*corpus_new_app) return new_corpus(corpus);
       if (*study_make_app) return run_study_make(study_make, run, registry);
       if (*annotate_app) return run_annotate(graph, annotation);
+      if (*study_report_app) return run_study_report(graph, study_report);
       if (*study_serve_app) return run_study_serve(graph, study_serve);
       if (*check_app) return check(files, registry, sets);
       if (*nodes_app) return fmt::print("{}", list_nodes(registry, word)), success;
