@@ -83,7 +83,7 @@ struct Confused {
   double share, low, high, answers;
 
   std::string text() const {
-    return fmt::format("{} ({:.0f} to {:.0f}\u00a0%)", share_text(share), 100 * low, 100 * high);
+    return fmt::format("{} of answers ({:.0f} to {:.0f}\u00a0%)", share_text(share), 100 * low, 100 * high);
   }
 };
 
@@ -98,7 +98,7 @@ std::string confusion_text(const Measure& measure, double confidence) {
   std::vector<std::string> parts;
   if (synthetic.answers > 0) parts.push_back("synthetic clips were taken for real in " + synthetic.text());
   if (real.answers > 0) parts.push_back("real clips were taken for synthetic in " + real.text());
-  return capital(fmt::format("{} of the answers to them.", fmt::join(parts, ", ")));
+  return capital(fmt::format("{}.", fmt::join(parts, ", ")));
 }
 
 /// Of synthetic or of real clips: the share of answers that took them for real, or the mean of people's mean scores.

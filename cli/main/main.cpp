@@ -31,14 +31,6 @@ namespace {
 using namespace talkgraph;
 using namespace talkgraph::cli;
 
-/// Of an enum, for CLI11.
-template <class E>
-std::vector<std::pair<std::string, E>> names_of() {
-  std::vector<std::pair<std::string, E>> names;
-  for (const auto& entry : enum_names<E>.entries) names.emplace_back(entry.name, entry.value);
-  return names;
-}
-
 /// A graph file, or the graph that a model file keeps.
 std::optional<Graph> load(const std::string& file, const Registry& registry, const std::vector<std::string>& sets) {
   Diagnostics diagnostics;
@@ -266,8 +258,15 @@ int main(int argc, char** argv) {
   study_report_app->add_option("-o,--output", study_report.output, "folder (default: report/ in that of the study)");
   study_report_app->add_flag("--finished-only", study_report.options.finished_only,
                              "leave out the answers of people who have not finished");
-  study_report_app->add_option("--correction", study_report.options.correction, "of p-values for the number of tests")
-      ->transform(CLI::CheckedTransformer(names_of<Correction>()))
+  study_report_app
+      ->add_option_function<std::string>(
+          "--correction",
+          [&](const std::string& name) {
+            for (const auto& entry : enum_names<Correction>.entries)
+              if (entry.name == name) study_report.options.correction = entry.value;
+          },
+          "of p-values for the number of tests")
+      ->check(CLI::IsMember({"holm", "benjamini_hochberg", "none"}))
       ->default_str("holm");
 
   auto* check_app = app.add_subcommand("check", "check graphs without running them");
