@@ -47,8 +47,8 @@ TEST(Story, TellsTheSharesOfATuringTest) {
       answers.answers.push_back(answered(p, "turing", clip, clip[2] == '2'));
   EXPECT_THAT(
       sentences(study, answers, 0)[0],
-      "Synthetic clips were taken for real in 50 % (15 to 85 %), real clips were taken for synthetic in 50 % (15 to "
-      "85 %) of the answers to them.");
+      "Synthetic clips were taken for real in 50 % of answers (15 to 85 %), real clips were taken for synthetic in "
+      "50 % of answers (15 to 85 %).");
   EXPECT_THAT(sentences(study, answers, 0),
               Contains("Real and synthetic clips: no difference was found in one comparison "
                        "(corrected p > 0.99)."));
