@@ -233,7 +233,7 @@ class StudyTest(unittest.TestCase):
         self.seen()
         self.assertEqual(self.status(), "Please answer.")
         self.assertEqual(self.label(".question:focus"), "The articulation is")
-        self.assertEqual([self.label(f".question input[value='{i}']") for i in range(5)],
+        self.assertEqual([self.label(f"#questions input[value='{i}']") for i in range(5)],
                          ["bad", "poor", "fair", "good", "excellent"])
         self.assertEqual(self.value("$('status').getAttribute('role')"), "status")
         self.assertLessEqual(self.value("document.documentElement.scrollWidth"), 360)

@@ -24,7 +24,7 @@
 namespace talkgraph::study {
 namespace {
 
-constexpr int usual = 3000, threads = 8;
+constexpr int usual = 3200, threads = 32;
 
 int requests() {
   const char* asked = std::getenv("TALKGRAPH_FUZZ");
