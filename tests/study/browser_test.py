@@ -217,8 +217,11 @@ class StudyTest(unittest.TestCase):
         return self.browser.ask("GET", f"/element/{next(iter(element.values()))}/computedlabel")
 
     def test_on_a_phone_and_for_screen_readers(self):
-        self.browser.ask("POST", "/goog/cdp/execute", {"cmd": "Emulation.setDeviceMetricsOverride", "params": {
-            "width": 360, "height": 740, "deviceScaleFactor": 1, "mobile": True}})
+        phone = {"Emulation.setTouchEmulationEnabled": {"enabled": True},
+                 "Emulation.setDeviceMetricsOverride": {"width": 360, "height": 740, "deviceScaleFactor": 1,
+                                                        "mobile": True}}
+        for command, parameters in phone.items():
+            self.browser.ask("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
         self.begin(self.server.links["start"])
         self.assertTrue(self.value("document.activeElement.matches('#intro h2')"), "what is new is read out")
         while self.value("state.test.questions.length") == 1:
@@ -269,6 +272,7 @@ class StudyTest(unittest.TestCase):
         self.server.kill()
         self.browser.keys("Enter")
         wait_for(lambda: "Not saved yet" in self.status(), "the page to tell")
+        self.assertTrue(self.value("$('status').getBoundingClientRect().bottom <= innerHeight"), "where it is seen")
         self.picture("killed")
         self.server.start()
         self.assertEqual(self.kept()[:len(before)], before)
