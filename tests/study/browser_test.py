@@ -68,7 +68,7 @@ class StudyTest(unittest.TestCase):
         self.addCleanup(profile.cleanup)
         self.browser = Browser(profile.name, (900, 900))
         self.addCleanup(self.browser.quit)
-        self.given = []
+        self.given, self.screen = [], ""
 
     # What the page shows.
     def value(self, expression):
@@ -94,7 +94,7 @@ class StudyTest(unittest.TestCase):
 
     def picture(self, name):
         if PICTURES:
-            self.browser.screenshot(PICTURES / f"{name}.png")
+            self.browser.screenshot(PICTURES / f"{self.screen}{name}.png")
 
     # What a person does.
     def begin(self, link):
@@ -217,6 +217,7 @@ class StudyTest(unittest.TestCase):
         return self.browser.ask("GET", f"/element/{next(iter(element.values()))}/computedlabel")
 
     def test_on_a_phone_and_for_screen_readers(self):
+        self.screen = "phone-"
         phone = {"Emulation.setTouchEmulationEnabled": {"enabled": True},
                  "Emulation.setDeviceMetricsOverride": {"width": 360, "height": 740, "deviceScaleFactor": 1,
                                                         "mobile": True}}
@@ -242,7 +243,7 @@ class StudyTest(unittest.TestCase):
         self.assertLessEqual(self.value("document.documentElement.scrollWidth"), 360)
         heights = self.value("[...document.querySelectorAll('#clip .option, #clip button')].map(e => e.offsetHeight)")
         self.assertGreaterEqual(min(heights), 44, "a finger meets it")
-        self.picture("phone")
+        self.picture("perceptual")
 
     def reload_in_the_middle(self):
         """What was chosen and how often the clip ran is there again."""
