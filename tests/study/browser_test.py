@@ -236,9 +236,10 @@ class StudyTest(unittest.TestCase):
         self.assertIn("of 16 clips answered", self.label("#progress"))
         self.seen()
         self.assertEqual(self.status(), "Please answer.")
-        self.assertEqual(self.label(".question:focus"), "The articulation is")
-        self.assertEqual([self.label(f"#questions input[value='{i}']") for i in range(5)],
-                         ["bad", "poor", "fair", "good", "excellent"])
+        # A browser tells screen readers of a change when it has time.
+        wait_for(lambda: self.label(".question:focus") == "The articulation is", "the question's name")
+        wait_for(lambda: [self.label(f"#questions input[value='{i}']") for i in range(5)]
+                 == ["bad", "poor", "fair", "good", "excellent"], "the options' names")
         self.assertEqual(self.value("$('status').getAttribute('role')"), "status")
         self.assertLessEqual(self.value("document.documentElement.scrollWidth"), 360)
         heights = self.value("[...document.querySelectorAll('#clip .option, #clip button')].map(e => e.offsetHeight)")
