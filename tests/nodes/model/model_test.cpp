@@ -76,10 +76,15 @@ TEST_F(ModelFile, NeedsNoMouths) {
 
 TEST_F(ModelFile, IsMovedByEither) {
   ContextGp process;
+  process.audio_mean = process.audio_scale = process.window = Eigen::RowVectorXd::Ones(1);
   process.phones = {"aa"};
+  process.lengths = {2};
+  process.frames = Eigen::MatrixXd::Identity(2, 2);
   process.weights = Eigen::MatrixXd::Constant(2, 3, 0.5);
-  process.inducing = {1};
+  process.mean = process.signal = Eigen::RowVectorXd::Ones(3);
   process.noise = 0.25;
+  process.inducing = {1};
+  process.certainty = Eigen::MatrixXd::Ones(1, 1);
   SaveModel{}(face, base, contexts, nullptr, &process, mean, nullptr, {}, context);
   const TalkingFace back = load_model(file());
   EXPECT_FALSE(back.states);
