@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <set>
@@ -73,6 +74,12 @@ Means means_where(const Measure& measure, const Which& which) {
   return means_of(scores);
 }
 
+/// Differences of means that are equal are equal numbers, though quotients are rounded: 1 − 2/3 is 2/3 − 1/3.
+double difference_of(double a, double b) {
+  constexpr double unit = 1e-9;
+  return unit * std::round((a - b) / unit);
+}
+
 void test(Comparison& c) {
   if (c.first.size() >= 2 && c.second.size() >= 2)
     c.test = rank_sum(values_of(c.first), values_of(c.second));
@@ -80,7 +87,8 @@ void test(Comparison& c) {
     c.test = {.p = NAN, .effect = NAN};
   std::vector<double> differences;
   for (const auto& [person, mean] : c.first)
-    if (const auto other = c.second.find(person); other != c.second.end()) differences.push_back(mean - other->second);
+    if (const auto other = c.second.find(person); other != c.second.end())
+      differences.push_back(difference_of(mean, other->second));
   if (differences.size() >= 2) c.p_paired = signed_rank(differences).p;
 }
 

@@ -86,6 +86,27 @@ TEST(Findings, RefuseAnswersThatDoNotFit) {
   EXPECT_THAT(with(other), HasSubstr("does not ask that"));
 }
 
+TEST(Findings, DifferencesOfThirdsAreTies) {
+  Study study = test::small();
+  for (const int from : {0, 2}) {
+    study.tests[0].clips.push_back(study.tests[0].clips[from]);
+    study.tests[0].clips.back().id = from == 0 ? "tr3" : "ts3";
+  }
+  Answers answers;
+  const std::vector<std::pair<int, int>> taken_for_real = {{3, 2}, {2, 1}, {1, 2}};  // real and synthetic clips, of 3
+  for (const auto& [real, synthetic] : taken_for_real) {
+    const auto id = static_cast<std::int64_t>(answers.participants.size() + 1);
+    answers.participants.push_back(person(id, 0));
+    for (int clip = 1; clip <= 3; ++clip) {
+      answers.answers.push_back(answered(id, "turing", "tr" + std::to_string(clip), clip <= real ? 0 : 1));
+      answers.answers.push_back(answered(id, "turing", "ts" + std::to_string(clip), clip <= synthetic ? 0 : 1));
+    }
+  }
+  const Findings findings = find(study, answers);
+  EXPECT_NEAR(comparison(findings, "turing", Kind::clips, "Ann").p_paired, 1, 1e-12)
+      << "three differences of one size; four of eight choices of signs are as extreme on either side";
+}
+
 TEST(Findings, CompareRealWithSyntheticOverPeople) {
   const Study study = test::small();
   const Findings findings = find(study, test::opinions());
