@@ -37,12 +37,16 @@ function say(text, bad = false) {
   $("status").classList.toggle("bad", bad);
 }
 
+/** Of the server, not of a proxy before it or of a request that broke off. */
+const is_answer = (response) =>
+  response.ok || (response.status < 500 && response.headers.get("Content-Type") === "application/json");
+
 /** An answer of the server; asks until there is one. */
 async function request(path, options, trouble) {
   for (;;) {
     try {
       const response = await fetch(`${base}/${path}`, options);
-      if (response.status < 500) return response;
+      if (is_answer(response)) return response;
     } catch {
       // No connection.
     }

@@ -211,6 +211,21 @@ class StudyTest(unittest.TestCase):
                 self.take_clip(True, replays=position % 2)
         self.check_all()
 
+    def test_what_does_not_come_from_the_server_is_no_answer(self):
+        self.begin(self.server.links["start"])
+        self.browser.click("#begin")
+        self.seen()
+        clip = self.clip()
+        self.answer_by_mouse()
+        self.note_answers(1)
+        self.browser.run("""const real = fetch, others = [new Response("", { status: 400 }),
+          new Response("<h1>Too many requests</h1>", { status: 429, headers: { "Content-Type": "text/html" } })];
+          window.fetch = (...asked) => others.length ? Promise.resolve(others.shift()) : real(...asked);""")
+        self.next_by_mouse()
+        wait_for(lambda: "Not saved yet" in self.status(), "the page to tell")
+        self.moved_on(clip)
+        self.assertEqual(self.kept(), self.given)
+
     def label(self, selector):
         """The name that a screen reader tells."""
         element = self.browser.ask("POST", "/element", {"using": "css selector", "value": selector})
