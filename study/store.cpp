@@ -56,7 +56,7 @@ std::string structure(const Study& study) {
     text += fmt::format("test {} {}\n", test.id, test.per_category);
     for (const auto& q : test.questions) text += line(q);
     for (const auto& c : test.clips)
-      text += fmt::format(" clip {} {} {}\n", c.id, c.category(), fmt::join(c.choices, "|"));
+      text += fmt::format(" clip {} {} {} {}\n", c.id, c.category(), fmt::join(c.choices, "|"), c.correct);
   }
   return text;
 }

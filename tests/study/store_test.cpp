@@ -138,8 +138,12 @@ TEST_F(StoreTest, AnswersOfAnotherStudyAreNotMixedWithThis) {
   study.title = "another title";
   study.tests[0].instructions = {"Look well."};
   { Store(folder, study); }
+  const auto refused = [&](const Study& other) { return refusal([&] { Store(folder, other); }); };
+  Study other_truth = study;
+  ++other_truth.tests[0].clips[0].correct;
+  EXPECT_THAT(refused(other_truth), HasSubstr("answers.db: was begun with other tests"));
   study.tests[0].clips.pop_back();
-  EXPECT_THAT(refusal([&] { Store(folder, study); }), HasSubstr("answers.db: was begun with other tests"));
+  EXPECT_THAT(refused(study), HasSubstr("answers.db: was begun with other tests"));
   write_study(study, folder);
   EXPECT_THAT(refusal([&] { read_answers(folder); }), HasSubstr("answers.db: was begun with other tests"));
 }
