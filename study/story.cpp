@@ -75,7 +75,8 @@ std::string verdict(const Findings& findings, std::vector<const Comparison*> of)
   for (std::size_t i = 0; i < std::min(differ, most_named); ++i)
     names.push_back(named(*of[i], findings.measures[of[i]->measure]));
   const std::string more = differ > most_named ? fmt::format("; and {} more", differ - most_named) : "";
-  return fmt::format("{} differ in {} of {}: {}{}.", sides, differ, comparisons, fmt::join(names, "; "), more);
+  const std::string of_them = of.size() == 1 ? "" : fmt::format("{} of ", differ);
+  return fmt::format("{} differ in {}{}: {}{}.", sides, of_them, comparisons, fmt::join(names, "; "), more);
 }
 
 /// The last row of confusions: all clips.

@@ -75,6 +75,18 @@ TEST(Story, NamesWhatDiffers) {
                "2.00, p < 0.01); how natural of all clips (5.00 against 3.50, p < 0.01)."));
 }
 
+TEST(Story, NamesTheOnlyComparison) {
+  const Study study = test::small();
+  Answers answers;
+  for (std::int64_t p = 1; p <= 6; ++p) {
+    answers.participants.push_back(person(p, 0));
+    for (const char* clip : {"tr1", "tr2", "ts1", "ts2"})
+      answers.answers.push_back(answered(p, "turing", clip, clip[1] == 's'));
+  }
+  EXPECT_THAT(sentences(study, answers, 0), Contains("Real and synthetic clips differ in one comparison: Ann (100 % "
+                                                     "against 0 %, p < 0.01)."));
+}
+
 TEST(Story, SaysWhereThereIsTooLittle) {
   Study study = test::small();
   EXPECT_EQ(about_people(find(study, {}), {}), "Nobody has taken part yet.");
