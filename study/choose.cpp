@@ -50,7 +50,7 @@ class Sentences {
  public:
   Sentences(const Speaker& speaker, int choices) : choices_(static_cast<std::size_t>(choices)) {
     auto all = speaker.sentences;
-    for (const auto& s : speaker.sequences) all.push_back(s.sentence);
+    for (const auto& s : speaker.sequences) all.push_back(s.sentence), held_out_.insert(plain(s.sentence));
     groups_ = by_length(all);
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (const auto& sentence : groups_[g]) group_of_[plain(sentence)] = g;
@@ -61,10 +61,13 @@ class Sentences {
     const auto found = group_of_.find(plain(sentence));
     return found != group_of_.end() && groups_[found->second].size() >= choices_;
   }
+  /// False choices are sentences of other sequences held out, as far as there are: a person who heard some of these in
+  /// another test would know the right one from among sentences that nobody hears.
   void offer(Clip& clip, const std::string& sentence, Random& random) const {
     auto others = groups_[group_of_.at(plain(sentence))];
     std::erase_if(others, [&](const auto& other) { return plain(other) == plain(sentence); });
     random.shuffle(others);
+    std::stable_partition(others.begin(), others.end(), [&](const auto& o) { return held_out_.contains(plain(o)); });
     others.resize(choices_ - 1);
     clip.correct = static_cast<int>(index(choices_, random));
     others.insert(others.begin() + clip.correct, sentence);
@@ -75,6 +78,7 @@ class Sentences {
   std::size_t choices_;
   std::vector<std::vector<std::string>> groups_;
   std::map<std::string, std::size_t> group_of_;
+  std::set<std::string> held_out_;
 };
 
 /// One category of a test, of one speaker.
@@ -194,8 +198,10 @@ class Chooser {
       for (auto* part : order) more |= dealer.widen(*part);
     }
     if (const auto again = dealer.used_again())
-      notes.push_back(fmt::format("{}: {} sequences do not suffice to show each only once: {} are in several clips",
-                                  speaker.title, speaker.sequences.size(), again));
+      notes.push_back(
+          fmt::format("{}: {} sequences do not suffice to show each only once: {} are in several clips, and "
+                      "who heard one may know it in a silent clip",
+                      speaker.title, speaker.sequences.size(), again));
     for (std::size_t t = 0; t < parts.size(); ++t) name_clips(parts[t], speaker, study.tests[t]);
   }
 

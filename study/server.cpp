@@ -2,7 +2,9 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -58,6 +60,15 @@ bool is_loopback(const std::string& name) {
   in_addr address{};
   if (inet_pton(AF_INET, name.c_str(), &address) == 1) return ntohl(address.s_addr) >> 24 == 127;
   return name == "localhost" || name == "::1" || name == "[::1]";
+}
+
+/// Of an address, in links: that of all addresses is this computer's name.
+std::string name_for_others(const std::string& address) {
+  if (address == "0.0.0.0" || address == "::") {
+    char name[256] = {};
+    if (gethostname(name, sizeof name - 1) == 0) return name;
+  }
+  return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
 /// "https://study.example:81" of "https://study.example:81/faces".
@@ -116,9 +127,7 @@ struct Server::State {
                       "and an address of this computer",
                       options.port, options.listen));
     port = *got;
-    const bool v6 = options.listen.find(':') != std::string::npos;
-    if (options.url.empty())
-      options.url = fmt::format("http://{}{}{}:{}", v6 ? "[" : "", options.listen, v6 ? "]" : "", port);
+    if (options.url.empty()) options.url = fmt::format("http://{}:{}", name_for_others(options.listen), port);
     if (options.url.ends_with('/')) options.url.pop_back();
   }
 
@@ -171,6 +180,7 @@ struct Server::State {
   }
 
   void take_answers(const Request& request, Response& response) {
+    const auto start = std::chrono::steady_clock::now();
     const auto taker = taker_of(request);
     const auto json = body_of(request);
     const auto shown = plan(study, taker.seed);
@@ -179,11 +189,14 @@ struct Server::State {
     if (!taker.started || clip > taker.clips) throw Refusal(409, "other questions come first");
     store.keep(taker, clip, answers, clip + 1 == shown.size());
     answer_state(request, response);
+    options.saved(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
 
   void send_clip(const Request& request, Response& response) const {
     const auto id = request.matches[2].str(), ending = request.matches[3].str();
-    clip_in({{"clip", id}}, plan(study, taker_of(request).seed));
+    const auto taker = taker_of(request);
+    clip_in({{"clip", id}}, plan(study, taker.seed));
+    if (!taker.started) throw Refusal(409, "other questions come first");
     send(read_file(clip_file(folder, id, ending)), ending == "mp4" ? "video/mp4" : "video/webm", request, response);
   }
 

@@ -12,6 +12,8 @@ struct ServerOptions {
   std::string listen = "127.0.0.1";  ///< address
   int port = 8018;                   ///< 0: any free one
   std::string url = "";              ///< by which people reach it; empty: the address and port
+  /// Told how long each save took, seconds, from the request read to its answer ready. Called by any threads.
+  std::function<void(double)> saved = [](double) {};
   /// Told of what keeps answers from being kept.
   std::function<void(const std::string&)> warn = [](const std::string&) {};
 };

@@ -49,11 +49,11 @@ std::int64_t now() { return std::time(nullptr); }
 
 /// What answers refer to.
 std::string structure(const Study& study) {
-  const auto line = [](const Question& q) { return fmt::format(" question {} {}\n", q.id, q.options.size()); };
+  const auto line = [](const Question& q) { return fmt::format(" question {} {}\n", q.id, fmt::join(q.options, "|")); };
   std::string text;
   for (const auto& q : study.profile) text += line(q);
   for (const auto& test : study.tests) {
-    text += fmt::format("test {} {}\n", test.id, test.per_category);
+    text += fmt::format("test {} {} {}\n", test.id, static_cast<int>(test.kind), test.per_category);
     for (const auto& q : test.questions) text += line(q);
     for (const auto& c : test.clips)
       text += fmt::format(" clip {} {} {} {}\n", c.id, c.category(), fmt::join(c.choices, "|"), c.correct);

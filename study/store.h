@@ -32,7 +32,7 @@ struct Taker {
 class Store {
  public:
   /// Makes the database with the first call. Throws std::runtime_error if it was begun with another study: other tests,
-  /// questions or clips; texts may change.
+  /// questions, options or clips; what they are called and told may change.
   Store(const std::filesystem::path& folder, const Study& study);
 
   /// Parts of links: 32 hexadecimal digits of the system's generator.

@@ -140,7 +140,11 @@ std::vector<std::string> story_of(const Findings& findings, const Test& test) {
   if (!answered) return {"It was not answered yet."};
   sentences.push_back(missing_side(test));
   const auto before = sentences.size();
-  for (const auto& [sides, comparisons] : kinds) sentences.push_back(verdict(findings, comparisons));
+  for (const auto& [sides, comparisons] : kinds) {
+    sentences.push_back(verdict(findings, comparisons));
+    if (std::get<Kind>(sides) == Kind::eyes && sentences.back() != "")
+      sentences.push_back("Static eyes do not blink, and may be half shut, being those of the mean face.");
+  }
   if (std::all_of(sentences.begin() + static_cast<std::ptrdiff_t>(before), sentences.end(),
                   [](const std::string& s) { return s.empty(); }))
     sentences.emplace_back("There are too few answers to test anything.");

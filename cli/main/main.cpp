@@ -246,8 +246,13 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   study_serve_app->add_option("--listen", study_serve.server.listen, "address; only this computer reaches the default")
       ->capture_default_str();
-  study_serve_app->add_option("--url", study_serve.server.url,
-                              "by which people reach the page, behind a proxy for one");
+  study_serve_app->add_option("--url", study_serve.server.url, "by which people reach the page, behind a proxy for one")
+      ->check(CLI::Validator(
+          [](const std::string& url) {
+            return url.starts_with("http://") || url.starts_with("https://") ? ""
+                                                                             : "must begin with http:// or https://";
+          },
+          "URL"));
   study_serve_app->add_option("--invite", study_serve.invite, "print so many new links, each for one person")
       ->check(CLI::Range(0, 10000));
 

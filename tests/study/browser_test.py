@@ -1,7 +1,10 @@
-"""Taking a study in a real browser: browser_test.py path/to/talkgraph path/to/write_small_study [folder for pictures [test...]]"""
+"""Taking a study in a real browser: browser_test.py path/to/talkgraph STUDY [folder for pictures [test...]]
+
+STUDY is path/to/write_small_study, or the folder of a study that `talkgraph study make` made, which is copied."""
 
 import json
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -14,9 +17,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "annotate"))
 from browser import KEYS, Browser, programs, wait_for
 
 KEYS.update({"Space": " ", "Tab": "\ue004"})
-CLIPS, ANSWERS = 16, 4 * 1 + 8 * 3 + 4 * 1
-TESTS = {"turing": ["real"], "perceptual": ["articulation", "naturalness", "agreeableness"],
-         "intelligibility": ["sentence"]}
 
 
 class Server:
@@ -56,8 +56,20 @@ class StudyTest(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory(prefix="talkgraph-study-")
         cls.addClassCleanup(temporary.cleanup)
         cls.study = pathlib.Path(temporary.name) / "study"
-        cls.study.mkdir()
-        subprocess.run([WRITER, str(cls.study)], check=True)
+        if STUDY.is_dir():
+            shutil.copytree(STUDY, cls.study, ignore=shutil.ignore_patterns("answers.db*"))
+        else:
+            cls.study.mkdir()
+            subprocess.run([str(STUDY), str(cls.study)], check=True)
+        study = json.loads((cls.study / "study.json").read_text())
+        cls.profile = {question["id"]: 1 for question in study["profile"]}
+        cls.questions = {clip["id"]: [question["id"] for question in test["questions"]]
+                         for test in study["tests"] for clip in test["clips"]}
+        cls.tests = {clip["id"]: test["id"] for test in study["tests"] for clip in test["clips"]}
+        categories = lambda test: {(c["speaker"], c["synthetic"], c["eyes"]) for c in test["clips"]}
+        shown = {test["id"]: test["per_category"] * len(categories(test)) for test in study["tests"]}
+        cls.clips = sum(shown.values())
+        cls.answers = sum(shown[test["id"]] * len(test["questions"]) for test in study["tests"])
 
     def setUp(self):
         for file in self.study.glob("answers.db*"):
@@ -90,7 +102,7 @@ class StudyTest(unittest.TestCase):
         return self.value("$('lock').disabled")
 
     def which(self):
-        return next(test for test in TESTS if self.clip().startswith(test[0]))
+        return self.tests[self.clip()]
 
     def picture(self, name):
         if PICTURES:
@@ -104,7 +116,6 @@ class StudyTest(unittest.TestCase):
         self.assertLessEqual(*self.value("[document.documentElement.scrollWidth, innerWidth]"))
         self.browser.click("#agree")
         self.wait_page("profile")
-        self.profile = {"age": 2, "native": 1}
         self.picture("profile")
         for question, option in self.profile.items():
             self.browser.click(f"input[name=profile-{question}][value='{option}']")
@@ -117,19 +128,19 @@ class StudyTest(unittest.TestCase):
 
     def option(self, question):
         """What this person answers: known of each clip and question, so that it can be found again."""
-        options = self.value(f"document.querySelectorAll('input[name={self.clip()}-{question}]').length")
+        options = self.value(f'document.querySelectorAll(`input[name="{self.clip()}-{question}"]`).length')
         return sum(map(ord, self.clip() + question)) % options
 
     def answer_by_mouse(self):
-        for question in TESTS[self.which()]:
-            self.browser.click(f"input[name={self.clip()}-{question}][value='{self.option(question)}']")
+        for question in self.questions[self.clip()]:
+            self.browser.click(f"input[name='{self.clip()}-{question}'][value='{self.option(question)}']")
 
     def answer_by_keys(self):
-        for question in TESTS[self.which()]:
+        for question in self.questions[self.clip()]:
             self.browser.keys(str(self.option(question) + 1))
 
     def note_answers(self, plays):
-        for question in TESTS[self.which()]:
+        for question in self.questions[self.clip()]:
             self.given.append((self.clip(), question, self.option(question), plays))
 
     def next_by_mouse(self):
@@ -165,19 +176,19 @@ class StudyTest(unittest.TestCase):
         self.assertEqual(person["profile"], self.profile)
         self.assertGreater(person["finished"], 0)
         answers = everything["answers"]
-        self.assertEqual(len(answers), ANSWERS)
+        self.assertEqual(len(answers), self.answers)
         self.assertEqual(self.kept(), self.given)
         order = [a["test"] for a in answers]
         self.assertEqual(list(dict.fromkeys(order)), person["tests"])
         self.assertEqual(order, sorted(order, key=person["tests"].index), "a test is over before the next begins")
         for answer in answers:
             self.assertGreater(answer["seconds"], 0.8, "the clip takes as long")
-        self.assertEqual(self.server.report(), {"invited": 1, "started": 1, "finished": 1, "answers": ANSWERS})
+        self.assertEqual(self.server.report(), {"invited": 1, "started": 1, "finished": 1, "answers": self.answers})
 
     def test_by_mouse(self):
         self.begin(self.server.links["start"])
         self.assertIn("/p/", self.value("location.pathname"))
-        for number in range(CLIPS):
+        for number in range(self.clips):
             if self.page() == "intro":
                 self.picture(f"intro-{number}")
                 self.browser.click("#begin")
@@ -206,7 +217,7 @@ class StudyTest(unittest.TestCase):
             if position == 1:
                 self.reload_in_the_middle()
             elif position == 2:
-                self.killed_while_saving(reload=len(self.given) < ANSWERS / 2)
+                self.killed_while_saving(reload=len(self.given) < self.answers / 2)
             else:
                 self.take_clip(True, replays=position % 2)
         self.check_all()
@@ -247,14 +258,15 @@ class StudyTest(unittest.TestCase):
         self.browser.click("#begin")
         self.wait_page("clip")
         self.assertTrue(self.value("document.activeElement.id === 'stage'"))
-        self.assertEqual(self.label("#stage"), "Clip 1 of 8")
-        self.assertIn("of 16 clips answered", self.label("#progress"))
+        self.assertRegex(self.label("#stage"), "Clip 1 of [0-9]+")
+        self.assertIn(f"of {self.clips} clips answered", self.label("#progress"))
         self.seen()
         self.assertEqual(self.status(), "Please answer.")
         # A browser tells screen readers of a change when it has time.
-        wait_for(lambda: self.label(".question:focus") == "The articulation is", "the question's name")
-        wait_for(lambda: [self.label(f"#questions input[value='{i}']") for i in range(5)]
-                 == ["bad", "poor", "fair", "good", "excellent"], "the options' names")
+        first = self.value("state.test.questions[0]")
+        wait_for(lambda: self.label(".question:focus") == first["text"], "the question's name")
+        wait_for(lambda: [self.label(f"#questions input[value='{i}']") for i in range(len(first["options"]))]
+                 == first["options"], "the options' names")
         self.assertEqual(self.value("$('status').getAttribute('role')"), "status")
         self.assertLessEqual(self.value("document.documentElement.scrollWidth"), 360)
         heights = self.value("[...document.querySelectorAll('#clip .option, #clip button')].map(e => e.offsetHeight)")
@@ -304,6 +316,6 @@ if __name__ == "__main__":
     if missing:
         print(f"SKIPPED: the page is not tested, {' and '.join(missing)} not found (Debian: chromium, chromium-driver)")
         sys.exit(77)
-    PROGRAM, WRITER = sys.argv[1:3]
+    PROGRAM, STUDY = sys.argv[1], pathlib.Path(sys.argv[2])
     PICTURES = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2)

@@ -184,6 +184,15 @@ TEST(Choose, TakesFalseSentencesFromOthersOfTheSpeaker) {
                 testing::UnorderedElementsAre("bin blue now", "set blue now", "set white now", "lay white now"));
 }
 
+TEST(Choose, TakesFalseSentencesThatAreHeardElsewhereFirst) {
+  Speaker one = speaker("A", 40);
+  one.sentences = {"This is sentence of training", "This is another sentence"};
+  const auto chosen = choose_from(source_design(), {one});
+  ASSERT_TRUE(chosen.study) << chosen.diagnostics.str();
+  for (const auto& clip : chosen.study->tests[2].clips)
+    EXPECT_THAT(clip.choices, testing::Each(HasSubstr("This is sentence 1"))) << clip.id;
+}
+
 TEST(Choose, SaysWhereThereAreTooFew) {
   const auto design = source_design();
   const auto complaint = [&](const std::vector<Speaker>& speakers) {

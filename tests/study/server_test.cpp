@@ -151,6 +151,13 @@ TEST_F(ServerTest, AClipIsItsPersonsAlone) {
     }
 }
 
+TEST_F(ServerTest, NoClipIsShownBeforeTheProfileIsGiven) {
+  const auto path = invited();
+  const auto taker = Store(folder, study).find(path.substr(path.rfind('/') + 1)).value();
+  const auto clip = plan(study, taker.seed).front().clip->id;
+  EXPECT_EQ(client().Get(fmt::format("{}/clips/{}.mp4", path, clip))->status, 409);
+}
+
 TEST_F(ServerTest, ClipsAreServedInRanges) {
   const auto path = starter();
   const auto id = get(path + "/state").json["test"]["clips"][0]["id"].get<std::string>();

@@ -142,6 +142,9 @@ TEST_F(StoreTest, AnswersOfAnotherStudyAreNotMixedWithThis) {
   Study other_truth = study;
   ++other_truth.tests[0].clips[0].correct;
   EXPECT_THAT(refused(other_truth), HasSubstr("answers.db: was begun with other tests"));
+  Study turned = study;
+  std::swap(turned.tests[0].questions[0].options[0], turned.tests[0].questions[0].options[1]);
+  EXPECT_THAT(refused(turned), HasSubstr("answers.db: was begun with other tests"));
   study.tests[0].clips.pop_back();
   EXPECT_THAT(refused(study), HasSubstr("answers.db: was begun with other tests"));
   write_study(study, folder);
