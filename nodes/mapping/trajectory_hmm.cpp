@@ -192,7 +192,7 @@ TrajectoryHmm TrainTrajectoryHmm::operator()(const Collected<Track>& audio, cons
 }
 
 void describe(Description<TrainTrajectoryHmm>& d) {
-  d.type("mapping.trajectory_hmm").version(1).stored();
+  d.type("mapping.trajectory_hmm").version(2).stored();
   d.summary(
       "learns a trajectory hidden Markov model of sound and face, refined until the trajectories it generates "
       "miss least");

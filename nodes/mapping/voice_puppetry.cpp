@@ -40,7 +40,7 @@ VoicePuppetry TrainVoicePuppetry::operator()(const Collected<Track>& audio, cons
 }
 
 void describe(Description<TrainVoicePuppetry>& d) {
-  d.type("mapping.voice_puppetry").version(1).stored();
+  d.type("mapping.voice_puppetry").version(2).stored();
   d.summary("learns an entropic hidden Markov model of the face, and what its states sound like");
   d.source("Thesis §4.2.3, Eqns 4.11-4.12; Brand 1999, \"Voice puppetry\"");
   d.input("audio", "speech features at the video rate of the training sequences")
