@@ -69,8 +69,9 @@ int calls(const json& nodes, const std::string& name) {
 }
 
 void measure(const std::string& talkgraph, const std::string& recordings, const std::filesystem::path& folder) {
-  const auto usage = child_usage({talkgraph, "run", TALKGRAPH_SOURCE_DIR "/pipelines/tune-grid-s1.json", "--quiet",
-                                  "--cache", folder / "cache", "-o", folder / "run", "--set", "folder=" + recordings});
+  const std::string graph = TALKGRAPH_SOURCE_DIR "/pipelines/tune-grid-s1.json";
+  const auto usage = child_usage({talkgraph, "run", graph, "--quiet", "--cache", folder / "cache", "-o", folder / "run",
+                                  "--set", "folder=" + recordings});
   const auto nodes = json::parse(std::ifstream(folder / "run" / "run.json"))["nodes"];
   const int clips = calls(nodes, "face/held_parts");
   fmt::print("The whole run: {:.0f} s of processor time in {:.0f} s, {:.2f} GB.\n\n", usage.cpu, usage.wall,

@@ -51,7 +51,7 @@ void check_finished(const fs::path& folder, const Json& run) {
 std::string title_of(const Json& graph, const fs::path& folder) {
   for (const auto& node : graph.at("nodes"))
     if (node.value("type", "") == "report.write") {
-      const auto title = node.value("params", Json::object()).value("title", "");
+      auto title = node.value("params", Json::object()).value("title", "");
       if (!title.empty() && title != "talkgraph report") return title;
     }
   return fs::weakly_canonical(folder).filename().string();

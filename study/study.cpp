@@ -144,7 +144,7 @@ Study read_study(const std::filesystem::path& folder) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be read; `talkgraph study make` makes it", file.string()));
   try {
-    const auto study = from(Json::parse(in));
+    auto study = from(Json::parse(in));
     check(study);
     return study;
   } catch (const std::exception& e) {

@@ -86,13 +86,13 @@ std::string draw_dots(const std::string& title, const std::vector<std::string>& 
     shared = shared && std::equal(panel.rows.begin(), panel.rows.end(), panels[0].rows.begin(), panels[0].rows.end(),
                                   [](const auto& a, const auto& b) { return a.name == b.name; });
   }
+  const int lines = (n + columns - 1) / columns;
   const double width = kAxis + kValue + kRight, beside = shared ? 0 : names;
-  std::string out =
-      svg_open(title, names + columns * (width + beside) - beside, kLegend + (n + columns - 1) / columns * height);
+  std::string out = svg_open(title, names + columns * (width + beside) - beside, kLegend + lines * height);
   out += draw_legend(series, names);
   for (int i = 0; i < n; ++i) {
-    const int column = i % columns;
-    out += svg_group(names + column * (width + beside), kLegend + i / columns * height + kTop,
+    const int column = i % columns, line = i / columns;
+    out += svg_group(names + column * (width + beside), kLegend + line * height + kTop,
                      draw_panel(panels[static_cast<std::size_t>(i)], column == 0 || !shared));
   }
   return out + "</svg>\n";
