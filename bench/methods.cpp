@@ -21,8 +21,8 @@ struct Method {
 };
 
 constexpr Method methods[] = {
-    {"10 nearest neighbours", "neighbours", "neighbours"},
-    {"20 nearest neighbours, sound and phones", "neighbours_phones", "neighbours_phones"},
+    {"nearest neighbours", "neighbours", "neighbours"},
+    {"nearest neighbours, sound and phones", "neighbours_phones", "neighbours_phones"},
     {"ridge regression", "ridge_sound", "ridge_sound"},
     {"ridge regression, sound and phones", "ridge_phones", "ridge_phones"},
     {"Gaussian process regression", "gp_regression", "gp_regression"},
