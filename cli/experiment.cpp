@@ -192,7 +192,7 @@ int run_series(const std::string& file, const ExperimentCommand& command, const 
   std::vector<TrialResult> all;
   for (auto& section : series->sections)
     for (auto& [experiment, graphs, results] : section.parts) {
-      fmt::print(stderr, "{}\n", experiment.name);
+      fmt::print(command.dry_run ? stdout : stderr, "{}\n", experiment.name);
       if (command.dry_run)
         list_trials(experiment, graphs, *cache, guard.flag());
       else if (!*guard.flag())

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
@@ -387,12 +385,7 @@ void check_outputs(const Experiment& experiment, const Graph& graph, Diagnostics
 }  // namespace
 
 std::optional<Experiment> load_experiment(const std::filesystem::path& file, Diagnostics& diagnostics) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    return diagnostics.error({}, fmt::format("{}: cannot be read", file.string())), std::nullopt;
-  const auto text = std::make_shared<SourceText>(SourceText{file.string(), {std::istreambuf_iterator<char>(in), {}}});
-  std::vector<std::string> open;
-  const auto json = detail::parse_extended(text, open, diagnostics);
+  const auto json = detail::parse_file(file, diagnostics);
   if (!json) return {};
   Experiment experiment = Reader(diagnostics).read(*json);
   experiment.name = file.stem().string();

@@ -15,11 +15,6 @@
 namespace talkgraph {
 namespace {
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 class Reader {
  public:
   Reader(const Registry& registry, const std::vector<std::string>& sets, Diagnostics& diagnostics)
@@ -156,15 +151,14 @@ std::string state_of(const ExperimentSeries::Part& part) {
 
 bool is_series(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file)) return false;
-  const Json json = Json::parse(text_of(file), nullptr, false);
+  std::ifstream in(file, std::ios::binary);
+  const Json json = Json::parse(in, nullptr, false);
   return json.is_object() && json.contains("sections");
 }
 
 std::optional<ExperimentSeries> load_series(const std::filesystem::path& file, const Registry& registry,
                                             const std::vector<std::string>& sets, Diagnostics& diagnostics) {
-  const auto text = std::make_shared<SourceText>(SourceText{file.string(), text_of(file)});
-  std::vector<std::string> open;
-  const auto json = detail::parse_extended(text, open, diagnostics);
+  const auto json = detail::parse_file(file, diagnostics);
   if (!json) return {};
   ExperimentSeries series = Reader(registry, sets, diagnostics).read(*json);
   series.name = file.stem().string();

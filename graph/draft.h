@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -62,6 +63,9 @@ std::shared_ptr<const SourceText> read_graph(const LocatedJson& file, Diagnostic
 /// that lead here, so that none extends itself.
 std::optional<LocatedJson> parse_extended(std::shared_ptr<const SourceText> text, std::vector<std::string>& open,
                                           Diagnostics& diagnostics);
+
+/// What a file of that path holds, with what it extends.
+std::optional<LocatedJson> parse_file(const std::filesystem::path& file, Diagnostics& diagnostics);
 
 /// Complain of members that are not allowed, or of what is no object.
 void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,

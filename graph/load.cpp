@@ -491,6 +491,14 @@ std::optional<LocatedJson> parse_extended(std::shared_ptr<const SourceText> text
   return base;
 }
 
+std::optional<LocatedJson> parse_file(const std::filesystem::path& file, Diagnostics& diagnostics) {
+  const auto text = read_text_file(file);
+  if (!text)
+    return diagnostics.error({}, fmt::format("{}: cannot be read{}", file.string(), nearby_graphs(file))), std::nullopt;
+  std::vector<std::string> open;
+  return parse_extended(text, open, diagnostics);
+}
+
 void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,
                 Diagnostics& diagnostics) {
   for (const auto& m : json.members)
@@ -537,30 +545,35 @@ std::optional<DeclaredInput> declared_input(const LocatedJson& json, const Regis
 
 }  // namespace detail
 
-std::optional<Graph> load_graph_text(const std::string& name, const std::string& text, const Registry& registry,
+namespace {
+
+std::optional<Graph> load_graph_json(const std::string& name, LocatedJson json, const Registry& registry,
                                      Diagnostics& diagnostics, const LoadOptions& options) {
-  const auto source = std::make_shared<SourceText>(SourceText{name, text});
   detail::Loader loader(registry, diagnostics);
-  std::vector<std::string> open;
-  auto json = detail::parse_extended(source, open, diagnostics);
-  if (!json) return {};
   for (const auto& set : options.sets)
-    if (const auto change = detail::parse_set(set, diagnostics)) loader.change(*json, *change);
-  for (const auto& change : options.changes) loader.change(*json, change);
-  loader.open_root(*std::move(json));
+    if (const auto change = detail::parse_set(set, diagnostics)) loader.change(json, *change);
+  for (const auto& change : options.changes) loader.change(json, change);
+  loader.open_root(std::move(json));
   auto graph = detail::connect(loader.draft, registry, diagnostics);
   if (graph) graph->name = name;
   return graph;
 }
 
+}  // namespace
+
+std::optional<Graph> load_graph_text(const std::string& name, const std::string& text, const Registry& registry,
+                                     Diagnostics& diagnostics, const LoadOptions& options) {
+  std::vector<std::string> open;
+  auto json = detail::parse_extended(std::make_shared<SourceText>(SourceText{name, text}), open, diagnostics);
+  if (!json) return {};
+  return load_graph_json(name, *std::move(json), registry, diagnostics, options);
+}
+
 std::optional<Graph> load_graph(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics,
                                 const LoadOptions& options) {
-  const auto text = detail::read_text_file(file);
-  if (!text) {
-    diagnostics.error({}, fmt::format("{}: cannot be read{}", file.string(), detail::nearby_graphs(file)));
-    return {};
-  }
-  return load_graph_text(text->name, text->text, registry, diagnostics, options);
+  auto json = detail::parse_file(file, diagnostics);
+  if (!json) return {};
+  return load_graph_json(file.string(), *std::move(json), registry, diagnostics, options);
 }
 
 }  // namespace talkgraph

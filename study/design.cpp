@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <memory>
 
 #include "graph/draft.h"
 
@@ -205,12 +202,7 @@ Place Design::at(std::initializer_list<std::string_view> path) const {
 }
 
 std::optional<Design> load_design(const std::filesystem::path& file, Diagnostics& diagnostics) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    return diagnostics.error({}, fmt::format("{}: cannot be read", file.string())), std::nullopt;
-  const auto text = std::make_shared<SourceText>(SourceText{file.string(), {std::istreambuf_iterator<char>(in), {}}});
-  std::vector<std::string> open;
-  const auto json = detail::parse_extended(text, open, diagnostics);
+  const auto json = detail::parse_file(file, diagnostics);
   if (!json) return {};
   Design design = Reader(diagnostics).read(*json);
   if (!diagnostics.ok()) return {};
