@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "nodes/latent/cholesky.h"
 #include "nodes/latent/scg.h"
 
@@ -104,6 +106,11 @@ std::vector<double> lower_error(StateGaussians& states, const std::vector<StateP
     context.progress(static_cast<double>(i) / iterations);
   };
   OptimiserReport report = descent.minimise(error, parameters);
+  if (report.trace.empty())
+    throw std::runtime_error(
+        fmt::format("{}: the trajectories to start from cannot be determined: raise the floor of variances, or ask for "
+                    "less smoothness",
+                    subject));
   if (report.iterations > 0) states = error.states(parameters);
   std::vector<double> trace = std::move(report.trace);
   for (double& cost : trace) cost *= 2 / static_cast<double>(states.dimensions());

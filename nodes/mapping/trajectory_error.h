@@ -50,7 +50,8 @@ class TrajectoryError : public Objective {
 };
 
 /// Lowers the error of trajectories by scaled conjugate gradients. Gives the mean squared error of a frame's dimension
-/// at the start and after each iteration. `subject` ("40 phones") stands in the log.
+/// at the start and after each iteration. `subject` ("40 phones") stands in the log. Throws std::runtime_error where
+/// trajectories are not determined to start with.
 std::vector<double> lower_error(StateGaussians& states, const std::vector<StatePath>& paths,
                                 const Eigen::MatrixXd& frames, int iterations, const std::string& subject,
                                 Context& context);

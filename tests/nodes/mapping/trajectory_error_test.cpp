@@ -79,6 +79,9 @@ TEST(TrajectoryError, CannotBeEvaluatedWhereVariancesVanish) {
   parameters.tail(6).setConstant(-1000);
   double cost = 0;
   EXPECT_FALSE(error.evaluate(parameters, cost, nullptr));
+  StateGaussians states = some_states(1, 1e100);
+  Context context;
+  EXPECT_THROW(lower_error(states, paths, frames, 5, "states", context), std::runtime_error);
 }
 
 }  // namespace
