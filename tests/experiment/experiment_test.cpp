@@ -150,6 +150,8 @@ TEST_F(ExperimentFile, FactorsDoNotCollide) {
               HasSubstr("sets the seed"));
   EXPECT_THAT(complaint(R"("vary": { "measure": { "path": "scale", "values": [1] } })"),
               HasSubstr("results have a column \"measure\" already: give the factor another name"));
+  EXPECT_THAT(complaint(R"("vary": { "p": { "path": "scale", "values": [1] } })"),
+              HasSubstr("results have a column \"p\" already"));
   EXPECT_THAT(complaint(R"("vary": { "s": { "path": "scale", "values": [1] }, "scale": [1, 2] })"),
               HasSubstr("\"scale\" sets \"scale\", which is set twice then"));
   EXPECT_THAT(complaint(R"("vary": { "parameters.scale.default": [1, 2], "scale": [1, 2] })"), HasSubstr("set twice"));
