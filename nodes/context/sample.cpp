@@ -90,7 +90,7 @@ void describe(Description<ContextSample>& d) {
   d.input("vlmm", "the contexts").output("labels", "one symbol after the other, at the video rate");
   d.param("sequences", &ContextSample::sequences).at_least(1).doc("how many are drawn");
   d.param("most", &ContextSample::most).at_least(1).unit("symbols").doc("longest sequence: frames, or runs of frames");
-  d.param("rate", &ContextSample::rate).unit("frames/s").doc("of the frames");
+  d.param("rate", &ContextSample::rate).positive().unit("frames/s").doc("of the frames");
 }
 
 }  // namespace talkgraph

@@ -13,5 +13,12 @@ TEST(RegisterContext, DescribesEveryNode) {
     EXPECT_TRUE(registry.find(name)) << name;
 }
 
+TEST(RegisterContext, SamplesHaveARateAboveZero) {
+  Registry registry;
+  register_context(registry);
+  for (const auto& parameter : registry.find("context.sample")->parameters)
+    if (parameter.name == "rate") EXPECT_TRUE(parameter.range.low == 0 && parameter.range.low_open);
+}
+
 }  // namespace
 }  // namespace talkgraph
