@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "nodes/mapping/context_kernel.h"
 #include "nodes/types/visemes.h"
 
 namespace talkgraph {
@@ -82,8 +83,8 @@ Eigen::MatrixXd described(const ContextGp& model, const Track& audio, const Phon
   f.leftCols(model.audio_mean.size()) =
       (audio.values.topRows(frames).rowwise() - model.audio_mean).array().rowwise() * model.audio_scale.array();
   f.rightCols(static_cast<Eigen::Index>(model.phones.size())) =
-      model.phone_scale * phone_shares(phones, model.phones, audio).topRows(frames);
-  return f;
+      phone_shares(phones, model.phones, audio).topRows(frames);
+  return f * model.map;
 }
 
 /// Kernel of some frames of one utterance (rows) with all of another.
@@ -194,34 +195,36 @@ Eigen::MatrixXd kernel_with_training(const ContextGp& model, const Eigen::Matrix
 /// A process that lacks its weights.
 struct Prepared {
   ContextGp model;
-  std::vector<std::string> keys;   ///< of the utterances
+  std::vector<Utterance> utterances;
   std::vector<Eigen::Index> rows;  ///< of the frames that are learnt
   Eigen::MatrixXd targets;         ///< their visual parameters less the mean
-  Eigen::MatrixXd factor;          ///< Cholesky's, of their covariance with its noise, in the lower triangle
 };
 
 Prepared prepare(const TrainContextGp& node, const Collected<Track>& audio, const Collected<PhoneTrack>& phones,
-                 const Collected<Track>& visual, Context& context) {
-  const auto utterances = pair_up(audio, phones, visual);
+                 const Collected<Track>& visual) {
   Prepared p;
+  p.utterances = pair_up(audio, phones, visual);
+  const auto& utterances = p.utterances;
   auto& model = p.model;
   z_score(utterances, model);
-  model.audio_scale *= std::sqrt(0.5 * node.sound / static_cast<double>(model.audio_mean.size()));
   model.phones = inventory(utterances);
-  model.phone_scale = std::sqrt(0.5 * node.phones);
+  const auto heard = model.audio_mean.size(), said = std::ssize(model.phones);
+  Eigen::VectorXd costs(heard + said);
+  costs.head(heard).setConstant(node.sound / static_cast<double>(heard));
+  costs.tail(said).setConstant(node.phones);
+  model.map = (0.5 * costs).cwiseSqrt().asDiagonal();
   model.window = window_of(node.reach, node.width);
   model.noise = node.noise;
 
   Eigen::Index total = 0;
   for (const auto& u : utterances) total += u.frames;
-  model.frames.resize(total, model.audio_mean.size() + static_cast<Eigen::Index>(model.phones.size()));
+  model.frames.resize(total, model.map.cols());
   Eigen::MatrixXd z(total, utterances[0].visual->dimension());
   Eigen::Index at = 0;
   for (const auto& u : utterances) {
     model.frames.middleRows(at, u.frames) = described(model, *u.audio, *u.phones, u.frames);
     z.middleRows(at, u.frames) = u.visual->values.topRows(u.frames);
     model.lengths.push_back(u.frames);
-    p.keys.push_back(u.key);
     at += u.frames;
   }
 
@@ -229,11 +232,58 @@ Prepared prepare(const TrainContextGp& node, const Collected<Track>& audio, cons
   p.targets = z(p.rows, Eigen::all);
   model.mean = p.targets.colwise().mean();
   p.targets.rowwise() -= model.mean;
-  p.factor = covariance(model, p.rows, context);
-  p.factor.diagonal().array() += model.noise;
-  if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(p.factor).info() != Eigen::Success)
-    throw std::runtime_error("the covariance of the training frames cannot be factorised: raise noise");
   return p;
+}
+
+/// The learnt frames of utterances in which anybody speaks.
+std::vector<KernelExample> examples_of(const Prepared& p) {
+  const Eigen::RowVectorXd deviation =
+      (p.targets.colwise().squaredNorm() / static_cast<double>(p.targets.rows())).cwiseSqrt();
+  const Eigen::RowVectorXd scale = (deviation.array() > 0).select(deviation.cwiseInverse(), 1.0);
+  const Eigen::Index n = p.model.window.size() / 2;
+  std::vector<KernelExample> examples;
+  for (const Block& block : blocks_of(p.model, p.rows)) {
+    const Utterance& u = p.utterances[block.utterance];
+    const auto speech = near_speech(*u.phones, *u.audio, u.frames, 0);
+    KernelExample example;
+    example.counts.resize(block.size());
+    for (Eigen::Index i = 0; i < block.size(); ++i)
+      example.counts[i] = speech[static_cast<std::size_t>(block.local[static_cast<std::size_t>(i)])] ? 1 : 0;
+    if (example.counts.isZero()) continue;
+    for (Eigen::Index l = -n; l <= n; ++l) {
+      auto at = block.local;
+      for (auto& t : at) t = std::clamp<Eigen::Index>(t + l, 0, u.frames - 1);
+      example.around.push_back(block.frames(at, Eigen::all));
+    }
+    example.targets = p.targets.middleRows(block.at, block.size()).array().rowwise() * scale.array();
+    examples.push_back(std::move(example));
+  }
+  return examples;
+}
+
+void learn_kernel_of(Prepared& p, const TrainContextGp& node, Random& random, Context& context) {
+  const auto examples = examples_of(p);
+  if (examples.size() < 2)
+    throw std::runtime_error(
+        "fewer than two utterances with speech: the kernel cannot be learnt by leaving one out; set kernel_steps to 0");
+  ContextGp& model = p.model;
+  const Eigen::Index c = model.map.cols();
+  const auto kernel = learn_kernel({node.kernel_steps, node.kernel_utterances}, examples,
+                                   {model.window, Eigen::MatrixXd::Identity(c, c), model.noise},
+                                   model.audio_mean.size(), random, context);
+  model.window = kernel.window;
+  model.noise = kernel.noise;
+  model.map *= kernel.map;
+  model.frames *= kernel.map;
+}
+
+/// Cholesky's factor of the learnt frames' covariance with its noise, in the lower triangle.
+Eigen::MatrixXd factor_of(const Prepared& p, Context& context) {
+  Eigen::MatrixXd factor = covariance(p.model, p.rows, context);
+  factor.diagonal().array() += p.model.noise;
+  if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(factor).info() != Eigen::Success)
+    throw std::runtime_error("the covariance of the training frames cannot be factorised: raise noise");
+  return factor;
 }
 
 /// K_uu⁻¹ − (K_uu + K_uf K_fu / noise)⁻¹ of the inducing frames u and the learnt ones f, K_uu with a jitter of 1e-6.
@@ -270,8 +320,11 @@ Eigen::MatrixXd phone_shares(const PhoneTrack& phones, const std::vector<std::st
 }
 
 ContextGp TrainContextGp::operator()(const Collected<Track>& audio, const Collected<PhoneTrack>& phones,
-                                     const Collected<Track>& visual, Context& context) const {
-  auto [model, keys, rows, z, factor] = prepare(*this, audio, phones, visual, context);
+                                     const Collected<Track>& visual, Random& random, Context& context) const {
+  Prepared p = prepare(*this, audio, phones, visual);
+  if (kernel_steps > 0) learn_kernel_of(p, *this, random, context);
+  Eigen::MatrixXd factor = factor_of(p, context);
+  auto& [model, utterances, rows, z] = p;
   factor.triangularView<Eigen::Lower>().solveInPlace(z);
   model.signal = z.colwise().squaredNorm() / static_cast<double>(rows.size());
   factor.triangularView<Eigen::Lower>().adjoint().solveInPlace(z);
@@ -282,18 +335,20 @@ ContextGp TrainContextGp::operator()(const Collected<Track>& audio, const Collec
   model.inducing.assign(even.begin(), even.end());
   model.certainty = certainty(model, rows, context);
   context.log(fmt::format("{} of {} frames learnt, {} phones", rows.size(), model.frames.rows(), model.phones.size()));
-  return model;
+  return std::move(model);
 }
 
 std::vector<HeldOut> leave_one_out(const TrainContextGp& node, const Collected<Track>& audio,
                                    const Collected<PhoneTrack>& phones, const Collected<Track>& visual,
                                    Context& context) {
-  const auto [model, keys, rows, z, factor] = prepare(node, audio, phones, visual, context);
-  if (keys.size() < 2) throw std::runtime_error("one utterance only: there are no others to learn from");
+  const Prepared p = prepare(node, audio, phones, visual);
+  const auto& [model, utterances, rows, z] = p;
+  if (utterances.size() < 2) throw std::runtime_error("one utterance only: there are no others to learn from");
+  const Eigen::MatrixXd factor = factor_of(p, context);
   const auto lower = factor.triangularView<Eigen::Lower>();
   const Eigen::MatrixXd weights = lower.adjoint().solve(lower.solve(z));
   std::vector<HeldOut> held;
-  for (const auto& key : keys) held.push_back({key, {}, Eigen::MatrixXd(0, z.cols())});
+  for (const auto& u : utterances) held.push_back({u.key, {}, Eigen::MatrixXd(0, z.cols())});
   for (const Block& block : blocks_of(model, rows)) {
     context.check_cancelled();
     const auto from = factor.rows() - block.at;
@@ -334,7 +389,7 @@ PredictContextGp::Prediction PredictContextGp::operator()(const ContextGp& model
 }
 
 void describe(Description<TrainContextGp>& d) {
-  d.type("mapping.context_gp").version(2).stored();
+  d.type("mapping.context_gp").version(3).stored();
   d.summary("learns a Gaussian process of visual parameters whose kernel compares sound and phones on both sides");
   d.input("audio", "speech features at the video rate of the training utterances")
       .input("phones", "their phones with times")
@@ -347,6 +402,10 @@ void describe(Description<TrainContextGp>& d) {
       .doc("what unrelated sound costs, natural logarithm of the kernel");
   d.param("phones", &TrainContextGp::phones).at_least(0).doc("what a different phone costs; 0: sound alone");
   d.param("noise", &TrainContextGp::noise).positive().doc("variance of the noise, of the signal's");
+  d.param("kernel_steps", &TrainContextGp::kernel_steps)
+      .at_least(0)
+      .doc("in which window, noise and a map of sound and phones are learnt by leaving out utterances; 0: as given");
+  d.param("kernel_utterances", &TrainContextGp::kernel_utterances).at_least(2).doc("of a step, drawn anew for each");
   d.param("margin", &TrainContextGp::margin).at_least(0).unit("frames").doc("around speech, where all is learnt");
   d.param("pauses", &TrainContextGp::pauses).at_least(1).doc("of other frames every n-th is learnt");
   d.param("max_frames", &TrainContextGp::max_frames).at_least(1).doc("most that are learnt, at even distances");

@@ -2,6 +2,7 @@
 
 #include "graph/context.h"
 #include "graph/description.h"
+#include "graph/random.h"
 #include "nodes/types/context_gp.h"
 #include "nodes/types/phones.h"
 #include "nodes/types/track.h"
@@ -13,6 +14,10 @@ namespace talkgraph {
 ///   −ln k = Σ_l w_l (sound · ½ mean_d (a_d − a'_d)² + phones · ½ |o − o'|²),  w_l ∝ exp(−(l / width)²),
 /// a z-scored audio features and o the share of the frame that each phone takes. So unrelated sound costs `sound`, a
 /// different phone `phones`.
+///
+/// These costs, window and noise are where the kernel begins that `kernel_steps` above 0 learn: as
+/// −ln k = Σ_l w_l |(x_l − x'_l) map|² with x both streams, by leaving out utterances (learn_kernel), of which at least
+/// two must have speech.
 ///
 /// Frames farther than `margin` from speech are pauses, of which every `pauses`-th is learnt; lost frames are not, and
 /// of more than `max_frames` as many at even distances. The time grows with the cube, the memory with the square of
@@ -30,13 +35,15 @@ struct TrainContextGp {
   double sound = 0.6;
   double phones = 2;
   double noise = 1;
+  int kernel_steps = 0;
+  int kernel_utterances = 60;
   int margin = 4;
   int pauses = 3;
   int max_frames = 12000;
   int inducing = 1000;
 
   ContextGp operator()(const Collected<Track>& audio, const Collected<PhoneTrack>& phones,
-                       const Collected<Track>& visual, Context& context) const;
+                       const Collected<Track>& visual, Random& random, Context& context) const;
 };
 void describe(Description<TrainContextGp>& d);
 
@@ -59,7 +66,8 @@ struct HeldOut {
 };
 
 /// Of every utterance, in closed form: ẑ_u = z_u − ((K + σ²I)⁻¹_uu)⁻¹ ((K + σ²I)⁻¹ (Z − mean))_u, which takes one
-/// factorisation and as long again. Errors of TrainContextGp; std::runtime_error if there is one utterance only.
+/// factorisation and as long again. The kernel is as the node gives it. Errors of TrainContextGp; std::runtime_error if
+/// there is one utterance only.
 std::vector<HeldOut> leave_one_out(const TrainContextGp& node, const Collected<Track>& audio,
                                    const Collected<PhoneTrack>& phones, const Collected<Track>& visual,
                                    Context& context);

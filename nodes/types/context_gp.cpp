@@ -18,12 +18,12 @@ void check(const ContextGp& g) {
   const Eigen::Index n = g.frames.rows(), d = g.mean.size(), heard = g.audio_mean.size(), m = std::ssize(g.inducing);
   stored.matrix("audio_mean", g.audio_mean, 1, heard);
   stored.matrix("audio_scale", g.audio_scale, 1, heard);
-  stored.not_negative("phone_scale", g.phone_scale);
+  stored.matrix("map", g.map, heard + std::ssize(g.phones), g.map.cols());
   stored.matrix("window", g.window, 1, g.window.size());
   stored.require(g.window.size() % 2 == 1, "window", "has no middle");
   stored.require(all_within(g.lengths, n) && std::accumulate(g.lengths.begin(), g.lengths.end(), std::int64_t{0}) == n,
                  "lengths", "do not sum to the number of frames");
-  stored.matrix("frames", g.frames, n, heard + std::ssize(g.phones));
+  stored.matrix("frames", g.frames, n, g.map.cols());
   stored.matrix("weights", g.weights, n, d);
   stored.matrix("mean", g.mean, 1, d);
   stored.matrix("signal", g.signal, 1, d);
@@ -39,7 +39,7 @@ void fields(Archive& ar, ContextGp& g) {
   ar("audio_mean", g.audio_mean);
   ar("audio_scale", g.audio_scale);
   ar("phones", g.phones);
-  ar("phone_scale", g.phone_scale);
+  ar("map", g.map);
   ar("window", g.window);
   ar("lengths", g.lengths);
   ar("frames", g.frames);

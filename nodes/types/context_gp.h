@@ -9,16 +9,16 @@ namespace talkgraph {
 
 /// A Gaussian process from sound and phones around a frame to visual parameters, with contexts that are soft. A frame
 /// is described by its sound and by how much of it each phone takes; the kernel of two frames is
-///   k(t, t') = exp(−Σ_l window_l |f_{t+l} − f'_{t'+l}|²),
+///   k(t, t') = exp(−Σ_l window_l |f_{t+l} − f'_{t'+l}|²),  f = [(audio − audio_mean) audio_scale, phones] map,
 /// frames beyond an end of an utterance being that end's.
 struct ContextGp {
   Eigen::RowVectorXd audio_mean;   ///< of the audio dimensions
-  Eigen::RowVectorXd audio_scale;  ///< what multiplies them; 0 for a constant one
+  Eigen::RowVectorXd audio_scale;  ///< 1 / deviation; 0 for a constant one
   std::vector<std::string> phones;
-  double phone_scale = 0;              ///< what multiplies the phones' shares
-  Eigen::RowVectorXd window;           ///< 2n + 1 weights of the neighbours, which sum to 1
+  Eigen::MatrixXd map;                 ///< (audio + phones) × C: of scaled audio and the phones' shares
+  Eigen::RowVectorXd window;           ///< 2n + 1 weights of the neighbours
   std::vector<std::int64_t> lengths;   ///< of the training utterances, which sum to N
-  Eigen::MatrixXd frames;              ///< f of the training utterances, N × (audio + phones)
+  Eigen::MatrixXd frames;              ///< f of the training utterances, N × C
   Eigen::MatrixXd weights;             ///< N × D, 0 where nothing was learnt
   Eigen::RowVectorXd mean;             ///< of the visual parameters, 1 × D
   Eigen::RowVectorXd signal;           ///< variance of what the process explains, 1 × D
@@ -29,7 +29,7 @@ struct ContextGp {
   Eigen::MatrixXd certainty;
 };
 template <>
-inline constexpr PortType port_type<ContextGp>{"ContextGp", 2};
+inline constexpr PortType port_type<ContextGp>{"ContextGp", 3};
 void fields(Archive& ar, ContextGp& g);
 
 }  // namespace talkgraph

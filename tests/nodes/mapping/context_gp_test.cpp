@@ -1,5 +1,6 @@
 #include "nodes/mapping/context_gp.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -41,7 +42,8 @@ struct Corpus {
   }
   ContextGp learn(const TrainContextGp& node) const {
     Context context;
-    return node(audio, phones, visual, context);
+    Random random(1);
+    return node(audio, phones, visual, random, context);
   }
 };
 
@@ -163,9 +165,7 @@ TEST(ContextGp, LeavesOneOutAsIfItWereNotThere) {
   const auto model = corpus.learn(node);
   const auto described = [&](std::size_t u) {
     const Eigen::MatrixXd a = corpus.audio[u].values;
-    return stacked(node,
-                   ((a.rowwise() - model.audio_mean).array().rowwise() * model.audio_scale.array()).matrix() /
-                       std::sqrt(0.5 * node.sound / 3),
+    return stacked(node, ((a.rowwise() - model.audio_mean).array().rowwise() * model.audio_scale.array()).matrix(),
                    phone_shares(corpus.phones[u], model.phones, corpus.audio[u]));
   };
   const Eigen::MatrixXd a = described(0), b = described(1), c = described(2);
@@ -207,6 +207,56 @@ TEST(ContextGp, KnowsTheNextPhone) {
   EXPECT_GT(PredictContextGp{}(model, silent_sound, next).visual.values(2, 0), 0.8);
   const auto deaf = corpus.learn({.reach = 4, .width = 3, .phones = 0, .noise = 0.01});
   EXPECT_NEAR(PredictContextGp{}(deaf, silent_sound, next).visual.values(2, 0), 0, 1e-9);
+}
+
+/// Of two streams of sound one moves the lips, of three phones two look alike.
+Corpus with_noise_beside(int from, int to) {
+  Corpus corpus;
+  for (int i = from; i < to; ++i) {
+    const Eigen::MatrixXd sound = gaussian(24, 2, 100 + i);
+    const bool b = i % 2;
+    Eigen::MatrixXd face(24, 1);
+    face << sound.col(0).head(12).array().tanh(), 2 + sound.col(0).tail(12).array().tanh();
+    corpus.add(std::to_string(i), track(sound), said({{b ? "b" : "p", 12}, {"aa", 12}}), track(face));
+  }
+  return corpus;
+}
+
+TEST(ContextGp, LearnsItsKernel) {
+  const auto corpus = with_noise_beside(0, 10), unmet = with_noise_beside(10, 14);
+  const TrainContextGp given{.reach = 1, .width = 1, .noise = 0.1, .inducing = 30};
+  auto learning = given;
+  learning.kernel_steps = 40;
+  learning.kernel_utterances = 6;
+  const auto model = corpus.learn(learning);
+  const auto error = [&](const ContextGp& m) {
+    double squares = 0;
+    for (std::size_t u = 0; u < unmet.audio.size(); ++u)
+      squares +=
+          (PredictContextGp{}(m, unmet.audio[u], unmet.phones[u]).visual.values - unmet.visual[u].values).squaredNorm();
+    return squares;
+  };
+  EXPECT_LT(error(model), 0.7 * error(corpus.learn(given)));
+  EXPECT_GT(model.map.row(0).norm(), 1.5 * model.map.row(1).norm());
+  ASSERT_EQ(model.phones, (std::vector<std::string>{"aa", "b", "p"}));
+  const auto apart = [&](int i, int j) { return (model.map.row(2 + i) - model.map.row(2 + j)).norm(); };
+  EXPECT_LT(apart(1, 2), apart(0, 1));
+  EXPECT_LT(apart(1, 2), apart(0, 2));
+  EXPECT_EQ(corpus.learn(learning).map, model.map);
+}
+
+TEST(ContextGp, LearnsItsKernelFromTwoUtterancesWithSpeechAtLeast) {
+  Corpus corpus = random_corpus();
+  corpus.phones = {};
+  corpus.phones.add("a", said({{"b", 12}}));
+  corpus.phones.add("b", said({{"sil", 9}}));
+  try {
+    corpus.learn({.kernel_steps = 3});
+    FAIL() << "one of two has speech";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("fewer than two utterances with speech"));
+  }
+  EXPECT_NO_THROW(corpus.learn({}));
 }
 
 TEST(ContextGp, PausesAreThinnedAndLostFramesLeftOut) {

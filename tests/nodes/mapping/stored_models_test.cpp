@@ -143,7 +143,7 @@ TEST_F(StoredMappings, WithoutStatesFitTogetherOrAreRefused) {
   TrainContextGp soft;
   soft.inducing = 10;
   check<ContextGp>(
-      soft(audio, phones, visual, context),
+      soft(audio, phones, visual, random, context),
       [&](const ContextGp& m) -> Eigen::MatrixXd {
         const auto face = PredictContextGp{}(m, heard, timed());
         return face.visual.values + face.variance.values;

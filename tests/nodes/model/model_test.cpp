@@ -78,6 +78,7 @@ TEST_F(ModelFile, IsMovedByEither) {
   ContextGp process;
   process.audio_mean = process.audio_scale = process.window = Eigen::RowVectorXd::Ones(1);
   process.phones = {"aa"};
+  process.map = Eigen::Matrix2d::Identity();
   process.lengths = {2};
   process.frames = Eigen::MatrixXd::Identity(2, 2);
   process.weights = Eigen::MatrixXd::Constant(2, 3, 0.5);
