@@ -17,7 +17,10 @@ TEST(RegisterContext, SamplesHaveARateAboveZero) {
   Registry registry;
   register_context(registry);
   for (const auto& parameter : registry.find("context.sample")->parameters)
-    if (parameter.name == "rate") EXPECT_TRUE(parameter.range.low == 0 && parameter.range.low_open);
+    if (parameter.name == "rate") {
+      EXPECT_EQ(parameter.range.low, 0);
+      EXPECT_TRUE(parameter.range.low_open);
+    }
 }
 
 }  // namespace
