@@ -264,8 +264,8 @@ std::vector<KernelExample> examples_of(const Prepared& p) {
 void learn_kernel_of(Prepared& p, const TrainContextGp& node, Random& random, Context& context) {
   const auto examples = examples_of(p);
   if (examples.size() < 2)
-    throw std::runtime_error(
-        "fewer than two utterances with speech: the kernel cannot be learnt by leaving one out; set kernel_steps to 0");
+    return context.warn(
+        "fewer than two utterances with speech: the kernel stays as it is given, for it is learnt by leaving one out");
   ContextGp& model = p.model;
   const Eigen::Index c = model.map.cols();
   const auto kernel = learn_kernel({node.kernel_steps, node.kernel_utterances}, examples,

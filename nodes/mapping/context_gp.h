@@ -15,9 +15,9 @@ namespace talkgraph {
 /// a z-scored audio features and o the share of the frame that each phone takes. So unrelated sound costs `sound`, a
 /// different phone `phones`.
 ///
-/// These costs, window and noise are where the kernel begins that `kernel_steps` above 0 learn: as
-/// −ln k = Σ_l w_l |(x_l − x'_l) map|² with x both streams, by leaving out utterances (learn_kernel), of which at least
-/// two must have speech.
+/// With these costs, window and noise begins the kernel that is learnt in `kernel_steps`, of
+/// `kernel_utterances` each: −ln k = Σ_l w_l |(x_l − x'_l) map|² with x both streams, by leaving out utterances
+/// (learn_kernel). Where fewer than two have speech, or with 0 steps, it stays as it begins.
 ///
 /// Frames farther than `margin` from speech are pauses, of which every `pauses`-th is learnt; lost frames are not, and
 /// of more than `max_frames` as many at even distances. The time grows with the cube, the memory with the square of
@@ -35,8 +35,8 @@ struct TrainContextGp {
   double sound = 0.6;
   double phones = 2;
   double noise = 1;
-  int kernel_steps = 0;
-  int kernel_utterances = 60;
+  int kernel_steps = 40;
+  int kernel_utterances = 30;
   int margin = 4;
   int pauses = 3;
   int max_frames = 12000;

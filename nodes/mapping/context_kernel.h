@@ -36,7 +36,7 @@ LeftOutError left_out_error(const std::vector<const KernelExample*>& utterances,
 /// Steps of Adam (Kingma & Ba 2015) down that error of some utterances, drawn anew for each step.
 struct KernelLearning {
   int steps = 40;
-  int utterances = 60;
+  int utterances = 30;
 };
 /// From window, noise and a map that is 1 to the kernel learnt; the map mixes only dimensions of the same of two
 /// groups, the first `heard` of x and the others.
