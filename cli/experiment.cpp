@@ -165,9 +165,10 @@ void run_trials_of(const Experiment& experiment, const std::vector<Graph>& graph
 
 int run_single(const std::string& file, const ExperimentCommand& command, const Registry& registry) {
   Diagnostics diagnostics;
-  const auto experiment = load_experiment(file, diagnostics);
-  const auto graphs = experiment ? load_trials(*experiment, registry, command.run.sets, diagnostics)
-                                 : std::optional<std::vector<Graph>>();
+  auto experiment = load_experiment(file, diagnostics);
+  if (experiment) set_in_all_runs(*experiment, command.run.sets, diagnostics);
+  const auto graphs =
+      experiment ? load_trials(*experiment, registry, diagnostics) : std::optional<std::vector<Graph>>();
   if (!graphs) return fmt::print(stderr, "{}\n", diagnostics.str()), usage;
   const InterruptGuard guard;
   const auto cache = open_cache(command.run);

@@ -32,6 +32,11 @@ std::string whole_path(const std::string& path) {
   return path.find('.') == std::string::npos && path != "seed" ? "parameters." + path + ".default" : path;
 }
 
+/// Whether what is set at `path` is replaced by what is set at `other`: the same, or what it is part of.
+bool is_within(const std::string& path, const std::string& other) {
+  return path == other || path.starts_with(other + ".");
+}
+
 /// What varies at a time: each level changes the graph and gives a cell to each column.
 struct Axis {
   struct Level {
@@ -75,9 +80,10 @@ class Reader {
     if (const auto* vary = json.find("vary")) out.vary = vary->key_place;
     for (const char* key : {"repeats", "seeds"})
       if (const auto* m = json.find(key)) out.repeats = m->key_place;
-    const auto* set = json.find("set");
-    lay_out(set ? changes_of(set->value, "experiment: \"set\"") : std::vector<Change>{}, axes(json), seeds(json),
-            json.place, out);
+    if (const auto* set = json.find("set")) out.set = changes_of(set->value, "experiment: \"set\"");
+    lay_out(axes(json), seeds(json), json.place, out);
+    out.varied = std::move(varied_);
+    if (out.repeats.source) out.varied.emplace("seed", out.repeats);
     return out;
   }
 
@@ -156,7 +162,7 @@ class Reader {
       std::set<std::string> of_level;
       for (const auto& change : level.changes) {
         const std::string path = whole_path(change.path);
-        if (!of_level.insert(path).second || paths_.contains(path)) twice.insert(change.path);
+        if (!of_level.insert(path).second || varied_.contains(path)) twice.insert(change.path);
       }
       own.merge(of_level);
     }
@@ -165,7 +171,7 @@ class Reader {
                          fmt::format("\"{}\" sets \"{}\", which is set twice then", factor.key, path));
     if (own.contains("seed") && factor.key != "seed")
       diagnostics_.error(factor.key_place, fmt::format("\"{}\" sets the seed: name seeds in \"seeds\"", factor.key));
-    paths_.merge(own);
+    for (const auto& path : own) varied_.emplace(path, factor.key_place);
   }
 
   static std::vector<std::string> texts(const std::vector<Json>& cells) {
@@ -272,8 +278,8 @@ class Reader {
   }
 
   /// All combinations, the first factor slowest, the seed fastest.
-  void lay_out(const std::vector<Change>& fixed, const std::vector<Axis>& axes, const std::vector<std::int64_t>& seeds,
-               const Place& place, Experiment& out) {
+  void lay_out(const std::vector<Axis>& axes, const std::vector<std::int64_t>& seeds, const Place& place,
+               Experiment& out) {
     double trials = static_cast<double>(std::max<std::size_t>(seeds.size(), 1));
     for (const auto& axis : axes) {
       out.factors.insert(out.factors.end(), axis.columns.begin(), axis.columns.end());
@@ -283,7 +289,6 @@ class Reader {
       return diagnostics_.error(
           place, fmt::format("experiment: {} runs; more than {} are surely a mistake", trials, most_trials));
     std::vector<Trial> all(1);
-    all[0].changes = fixed;
     for (const auto& axis : axes) all = combine(all, axis);
     out.settings = all.size();
     for (std::size_t s = 0; s < all.size(); ++s) {
@@ -330,7 +335,8 @@ class Reader {
   }
 
   Diagnostics& diagnostics_;
-  std::set<std::string> columns_, paths_;  ///< of the factors so far
+  std::set<std::string> columns_;        ///< of the factors so far
+  std::map<std::string, Place> varied_;  ///< whole paths that they set
 };
 
 /// Two trials that would do the same.
@@ -393,13 +399,33 @@ std::optional<Experiment> load_experiment(const std::filesystem::path& file, Dia
   return experiment;
 }
 
+void set_in_all_runs(Experiment& experiment, const std::vector<std::string>& sets, Diagnostics& diagnostics) {
+  for (const auto& set : sets) {
+    auto change = detail::parse_set(set, diagnostics);
+    if (!change) continue;
+    const std::string path = whole_path(change->path);
+    for (const auto& [varied, place] : experiment.varied)
+      if (is_within(path, varied))
+        diagnostics.error(place, fmt::format("--set {} cannot hold in all runs: what it sets varies here", set));
+    std::erase_if(experiment.set, [&](const Change& fixed) { return is_within(whole_path(fixed.path), path); });
+    experiment.set.push_back(*std::move(change));
+  }
+}
+
+std::optional<Graph> load_trial(const Experiment& experiment, const Trial& trial, const Registry& registry,
+                                Diagnostics& diagnostics) {
+  std::vector<Change> changes = experiment.set;
+  changes.insert(changes.end(), trial.changes.begin(), trial.changes.end());
+  return load_graph(experiment.graph, registry, diagnostics, {{}, std::move(changes)});
+}
+
 std::optional<std::vector<Graph>> load_trials(const Experiment& experiment, const Registry& registry,
-                                              const std::vector<std::string>& sets, Diagnostics& diagnostics) {
+                                              Diagnostics& diagnostics) {
   std::vector<Graph> graphs;
   std::set<std::string> said;
   for (const auto& trial : experiment.trials) {
     Diagnostics own;
-    auto graph = load_graph(experiment.graph, registry, own, {sets, trial.changes});
+    auto graph = load_trial(experiment, trial, registry, own);
     if (graph) check_outputs(experiment, *graph, own);
     for (const auto& m : own.messages())
       if (said.insert(fmt::format("{}:{}:{}", m.place.line, m.place.column, m.text)).second)

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,8 +31,10 @@ struct Experiment {
   std::string name;  ///< of the file, without its ending
   std::string description;
   std::filesystem::path graph;
-  Place vary, repeats;               ///< where the factors stand, and the seeds
-  std::vector<std::string> factors;  ///< what varies
+  Place vary, repeats;                  ///< where the factors stand, and the seeds
+  std::vector<Change> set;              ///< of all runs, before their own changes
+  std::map<std::string, Place> varied;  ///< what factors and seeds set, by whole paths, and where
+  std::vector<std::string> factors;     ///< what varies
   std::vector<Trial> trials;
   std::size_t settings = 1;
   NamedOutputs tabulate;          ///< tables or scores
@@ -42,10 +45,17 @@ struct Experiment {
 /// Reads an experiment file (docs/experiments.md). All that is wrong goes to `diagnostics`; nothing is returned then.
 std::optional<Experiment> load_experiment(const std::filesystem::path& file, Diagnostics& diagnostics);
 
-/// Reads and checks the graph of every trial, each with `sets` and its own changes, and that what is to be tabulated
-/// and shown is there to be. All that is wrong goes to `diagnostics`, once; nothing is returned then.
+/// Changes all runs by `sets`, as given to --set, in place of what the file's "set" has. It is an error, with the
+/// factor's place, where the runs' own changes would replace what one sets.
+void set_in_all_runs(Experiment& experiment, const std::vector<std::string>& sets, Diagnostics& diagnostics);
+
+/// Reads and checks the graph of a trial.
+std::optional<Graph> load_trial(const Experiment& experiment, const Trial& trial, const Registry& registry,
+                                Diagnostics& diagnostics);
+/// Those of all trials, and that what is to be tabulated and shown is there to be. All that is wrong goes to
+/// `diagnostics`, once; nothing is returned then.
 std::optional<std::vector<Graph>> load_trials(const Experiment& experiment, const Registry& registry,
-                                              const std::vector<std::string>& sets, Diagnostics& diagnostics);
+                                              Diagnostics& diagnostics);
 
 /// The JSON Schema of experiment files, for editors.
 Json experiment_schema();

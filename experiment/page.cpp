@@ -272,6 +272,14 @@ std::string trial_table(const Experiment& experiment, const std::vector<Graph>& 
                                         {"run", "status", "seconds", "calls", "found", "differs in"}, lines);
 }
 
+/// What is set in all runs, a line.
+std::string settings(const Experiment& experiment) {
+  std::vector<std::string> all;
+  for (const auto& [path, value] : experiment.set)
+    all.push_back(fmt::format("<code>{}</code>", escape_markup(path + "=" + text_of(value.plain()))));
+  return all.empty() ? "" : fmt::format("<p>In all runs {}.</p>\n", fmt::join(all, ", "));
+}
+
 }  // namespace
 
 std::vector<Plot> plot_estimates(const Experiment& experiment, const std::vector<Estimate>& estimates) {
@@ -312,7 +320,7 @@ std::vector<std::string> missing_measures(const Experiment& experiment, const st
 std::string html_results(const Experiment& experiment, const std::vector<TrialResult>& results,
                          const std::string& folder) {
   const auto estimates = estimate(experiment, results);
-  std::string html;
+  std::string html = settings(experiment);
   if (!estimates.empty()) html += "<p>" + interval_note(estimates) + "</p>\n";
   if (std::any_of(estimates.begin(), estimates.end(), [](const Estimate& e) { return e.partial; }))
     html += "<p>* Without items that failed: see the runs.</p>\n";

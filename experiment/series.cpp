@@ -87,23 +87,31 @@ class Reader {
     std::vector<std::string> own;
     std::copy_if(sets_.begin(), sets_.end(), std::back_inserter(own),
                  [&](const std::string& set) { return takes(*experiment, set); });
-    auto graphs = load_trials(*experiment, registry_, own, diagnostics_);
+    set_in_all_runs(*experiment, own, diagnostics_);
+    auto graphs = load_trials(*experiment, registry_, diagnostics_);
     if (!graphs) return {};
     return ExperimentSeries::Part{*std::move(experiment), *std::move(graphs), {}};
   }
 
   bool takes(const Experiment& experiment, const std::string& set) {
     Diagnostics unheard;
-    if (!load_graph(experiment.graph, registry_, unheard, {{set}, experiment.trials[0].changes})) return false;
+    if (!first_graph(experiment, set, unheard)) return false;
     taken_.insert(set);
     return true;
+  }
+
+  std::optional<Graph> first_graph(Experiment experiment, const std::string& set, Diagnostics& diagnostics) {
+    const auto change = detail::parse_set(set, diagnostics);
+    if (!change) return {};
+    experiment.set.push_back(*change);
+    return load_trial(experiment, experiment.trials[0], registry_, diagnostics);
   }
 
   /// Of a change that no graph takes, as the first one says it.
   void complain_of(const std::string& set, const ExperimentSeries& series) {
     for (const auto& section : series.sections)
       for (const auto& part : section.parts) {
-        load_graph(part.experiment.graph, registry_, diagnostics_, {{set}, part.experiment.trials[0].changes});
+        first_graph(part.experiment, set, diagnostics_);
         return;
       }
   }

@@ -67,6 +67,9 @@ std::optional<LocatedJson> parse_extended(std::shared_ptr<const SourceText> text
 /// What a file of that path holds, with what it extends.
 std::optional<LocatedJson> parse_file(const std::filesystem::path& file, Diagnostics& diagnostics);
 
+/// "path=value", as given to --set.
+std::optional<Change> parse_set(const std::string& set, Diagnostics& diagnostics);
+
 /// Complain of members that are not allowed, or of what is no object.
 void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,
                 Diagnostics& diagnostics);

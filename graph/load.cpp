@@ -444,19 +444,6 @@ void Loader::add_graph_inputs() {
   }
 }
 
-/// "path=value", as given to --set.
-std::optional<Change> parse_set(const std::string& set, Diagnostics& diagnostics) {
-  const auto equals = set.find('=');
-  const auto source = std::make_shared<SourceText>(SourceText{"--set", set});
-  const Place place{source, 1, 1, static_cast<int>(set.size())};
-  if (equals == std::string::npos || equals == 0)
-    return diagnostics.error(place, "--set takes path=value, such as nodes.mfcc.params.filters=20"), std::nullopt;
-  const std::string text = set.substr(equals + 1);
-  Diagnostics not_json;
-  const auto value = parse_json(std::make_shared<SourceText>(SourceText{"--set", text}), not_json);
-  return Change{set.substr(0, equals), located(not_json.ok() ? value->plain() : Json(text), place)};
-}
-
 }  // namespace
 
 std::shared_ptr<const SourceText> read_graph(const LocatedJson& file, Diagnostics& diagnostics) {
@@ -497,6 +484,18 @@ std::optional<LocatedJson> parse_file(const std::filesystem::path& file, Diagnos
     return diagnostics.error({}, fmt::format("{}: cannot be read{}", file.string(), nearby_graphs(file))), std::nullopt;
   std::vector<std::string> open;
   return parse_extended(text, open, diagnostics);
+}
+
+std::optional<Change> parse_set(const std::string& set, Diagnostics& diagnostics) {
+  const auto equals = set.find('=');
+  const auto source = std::make_shared<SourceText>(SourceText{"--set", set});
+  const Place place{source, 1, 1, static_cast<int>(set.size())};
+  if (equals == std::string::npos || equals == 0)
+    return diagnostics.error(place, "--set takes path=value, such as nodes.mfcc.params.filters=20"), std::nullopt;
+  const std::string text = set.substr(equals + 1);
+  Diagnostics not_json;
+  const auto value = parse_json(std::make_shared<SourceText>(SourceText{"--set", text}), not_json);
+  return Change{set.substr(0, equals), located(not_json.ok() ? value->plain() : Json(text), place)};
 }
 
 void check_keys(const LocatedJson& json, const std::vector<std::string>& allowed, const std::string& subject,

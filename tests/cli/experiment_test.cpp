@@ -13,8 +13,9 @@ using testing::Not;
 
 class SeriesCommand : public test::ScoredExperiments {
  protected:
-  int run(const std::string& file) {
+  int run(const std::string& file, const std::vector<std::string>& sets = {}) {
     cli::ExperimentCommand command;
+    command.run.sets = sets;
     command.run.folder = folder_.path() / "out";
     command.run.progress = ProgressStyle::quiet;
     return cli::run_experiment(file, command, test::scored_registry());
@@ -33,6 +34,17 @@ TEST_F(SeriesCommand, RunsAllAndTellsOfThemOnOnePage) {
     EXPECT_THAT(page, HasSubstr(text));
   EXPECT_THAT(page, Not(HasSubstr("so far")));
   EXPECT_THAT(folder_.read("out/two/results.csv"), HasSubstr("scale"));
+}
+
+TEST_F(SeriesCommand, SaysWhatWasSetInAllRuns) {
+  const auto file = folder_.write("fixed.json", R"({ "graph": "graph.json", "tabulate": ["scores"],
+                                                     "set": { "scale": 12, "title": "<b>" } })");
+  EXPECT_EQ(run(file, {"scale=16"}), 0);
+  EXPECT_THAT(folder_.read("out/experiment.html"),
+              HasSubstr("<p>In all runs <code>title=&lt;b&gt;</code>, <code>scale=16</code>.</p>"));
+  EXPECT_THAT(folder_.read("out/results.csv"), HasSubstr("y,16"));
+  EXPECT_THAT(folder_.read("out/trials/run/graph.resolved.json"), HasSubstr("\"scale\": 16"));
+  EXPECT_EQ(run(folder_.file("two.json"), {"scale=16"}), 2);
 }
 
 TEST_F(SeriesCommand, AnExperimentThatFailsDoesNotStopTheOthers) {

@@ -44,7 +44,7 @@ TEST(Experiments, AreSound) {
       continue;
     }
     const auto experiment = load_experiment(entry.path(), diagnostics);
-    EXPECT_TRUE(experiment && load_trials(*experiment, registry, {}, diagnostics)) << diagnostics.str();
+    EXPECT_TRUE(experiment && load_trials(*experiment, registry, diagnostics)) << diagnostics.str();
     ++count;
   }
   EXPECT_GT(count, 0u);
@@ -57,7 +57,7 @@ TEST(Experiments, OfSpeechWriteNothing) {
     const std::string file = test::source("/pipelines/experiments/") + std::string(name) + ".json";
     const auto experiment = load_experiment(file, diagnostics);
     ASSERT_TRUE(experiment) << diagnostics.str();
-    const auto graphs = load_trials(*experiment, registry, {}, diagnostics);
+    const auto graphs = load_trials(*experiment, registry, diagnostics);
     ASSERT_TRUE(graphs) << diagnostics.str();
     for (const auto& graph : *graphs)
       for (const auto& node : graph.nodes) EXPECT_FALSE(node.type->sink) << node.name;

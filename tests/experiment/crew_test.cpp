@@ -22,7 +22,7 @@ class CrewTest : public testing::Test {
     const auto file = folder_.write("e.json", R"({ "graph": "graph.json", "tabulate": ["scores"], )" + members + "}");
     experiment_ = load_experiment(file, diagnostics);
     EXPECT_TRUE(experiment_) << diagnostics.str();
-    const auto graphs = load_trials(*experiment_, registry_, {}, diagnostics);
+    const auto graphs = load_trials(*experiment_, registry_, diagnostics);
     EXPECT_TRUE(graphs) << diagnostics.str();
     options.folder = folder_.path() / "out";
     std::vector<TrialResult> results;

@@ -166,7 +166,7 @@ TEST_F(ExperimentFile, FactorsDoNotCollide) {
 TEST_F(ExperimentFile, NoTwoRunsAreTheSame) {
   Diagnostics diagnostics;
   EXPECT_FALSE(load_trials(sound(R"("vary": { "nodes.score.params.scale": [1], "scale": [2, 3] })"),
-                           test::scored_registry(), {}, diagnostics));
+                           test::scored_registry(), diagnostics));
   EXPECT_THAT(diagnostics.str(), HasSubstr("e.json:1:50: error: the runs \"scale=1,scale=2\" and "
                                            "\"scale=1,scale=3\" are the same"));
 }
@@ -175,10 +175,10 @@ TEST_F(ExperimentFile, RepeatsThatChangeNothingAreRefused) {
   folder_.write("graph.json",
                 R"({ "nodes": { "items": { "type": "test.items" } }, "outputs": { "scores": "items" } })");
   Diagnostics diagnostics;
-  EXPECT_FALSE(load_trials(sound(R"("repeats": 3)"), test::scored_registry(), {}, diagnostics));
+  EXPECT_FALSE(load_trials(sound(R"("repeats": 3)"), test::scored_registry(), diagnostics));
   EXPECT_THAT(diagnostics.str(), HasSubstr("e.json:1:50: error: repeats with other seeds would all give the same"));
   Diagnostics one;
-  EXPECT_TRUE(load_trials(sound(R"("seeds": [3])"), test::scored_registry(), {}, one)) << one.str();
+  EXPECT_TRUE(load_trials(sound(R"("seeds": [3])"), test::scored_registry(), one)) << one.str();
 }
 
 TEST_F(ExperimentFile, AGraphThatIsNotThereIsToldOfWithItsPlace) {
@@ -211,7 +211,8 @@ TEST_F(ExperimentFile, MayExtendAnother) {
   EXPECT_EQ(e->name, "more");
   EXPECT_EQ(e->graph, folder_.file("graph.json"));
   EXPECT_EQ(e->trials.size(), 4u);
-  EXPECT_EQ(e->trials[0].changes.size(), 4u);
+  EXPECT_EQ(e->set.size(), 2u);
+  EXPECT_EQ(e->trials[0].changes.size(), 2u);
   EXPECT_TRUE(e->plot.empty());
 }
 
@@ -219,7 +220,7 @@ TEST_F(ExperimentFile, EveryTrialIsCheckedAndAMistakeToldOnce) {
   const Registry registry = test::scored_registry();
   const auto complaint_of_trials = [&](const std::string& members) {
     Diagnostics diagnostics;
-    EXPECT_FALSE(load_trials(sound(members), registry, {}, diagnostics));
+    EXPECT_FALSE(load_trials(sound(members), registry, diagnostics));
     return diagnostics.str();
   };
   const auto unknown = complaint_of_trials(R"("set": { "scal": 1 }, "vary": { "offset": [1, 2] })");
@@ -231,13 +232,51 @@ TEST_F(ExperimentFile, EveryTrialIsCheckedAndAMistakeToldOnce) {
   EXPECT_THAT(complaint_of_trials(R"("show": ["scores"])"), HasSubstr("is of type Scores, not Artifact or Plot"));
 }
 
+TEST_F(ExperimentFile, WhatIsSetInAllRunsReplacesWhatTheFileSets) {
+  const auto score = [&](const std::vector<std::string>& sets) {
+    Experiment e = sound(R"("set": { "scale": 12, "nodes.score.params.offset": 2 }, "vary": { "noise": [0, 1] })");
+    Diagnostics diagnostics;
+    set_in_all_runs(e, sets, diagnostics);
+    const auto graphs = load_trials(e, test::scored_registry(), diagnostics);
+    EXPECT_TRUE(graphs) << diagnostics.str();
+    return graphs.value().at(1).resolved["nodes"]["score"]["params"];
+  };
+  EXPECT_EQ(score({})["scale"], 12);
+  EXPECT_EQ(score({"scale=16"})["scale"], 16);
+  EXPECT_EQ(score({"parameters.scale.default=16"})["scale"], 16);
+  EXPECT_EQ(score({"scale=16", "scale=17"})["scale"], 17);
+  EXPECT_EQ(score({"scale=16"})["offset"], 2);
+  EXPECT_EQ(score({"scale=16"})["noise"], 1);
+  EXPECT_EQ(score({R"(nodes.score.params={"noise": "${noise}"})"})["offset"], 0);
+}
+
+TEST_F(ExperimentFile, WhatVariesIsNotSetInAllRuns) {
+  const auto complaint_of = [&](const std::string& members, const std::string& set) {
+    Experiment e = sound(members);
+    Diagnostics diagnostics;
+    set_in_all_runs(e, {set}, diagnostics);
+    EXPECT_FALSE(load_trials(e, test::scored_registry(), diagnostics));
+    return diagnostics.str();
+  };
+  EXPECT_THAT(complaint_of(R"("vary": { "scale": [1, 2] })", "scale=3"),
+              HasSubstr("e.json:1:60: error: --set scale=3 cannot hold in all runs: what it sets varies here"));
+  EXPECT_THAT(complaint_of(R"("vary": { "s": { "path": "scale", "values": [1] } })", "parameters.scale.default=3"),
+              HasSubstr("e.json:1:60: error: --set"));
+  EXPECT_THAT(
+      complaint_of(R"("vary": { "k": { "levels": { "a": {}, "b": { "nodes.score.params": { "scale": 2 } } } } })",
+                   "nodes.score.params.scale=3"),
+      HasSubstr("e.json:1:60: error: --set"));
+  EXPECT_THAT(complaint_of(R"("seeds": [1, 2])", "seed=3"), HasSubstr("e.json:1:50: error: --set seed=3 cannot"));
+  EXPECT_THAT(complaint_of("", "scale"), HasSubstr("--set takes path=value"));
+}
+
 TEST_F(ExperimentFile, FilesInItAreNamedFromItsFolder) {
   folder_.write("below/graph2.json", test::scored_graph);
   const auto file = folder_.write("below/e.json", R"({ "graph": "graph2.json", "tabulate": ["scores"] })");
   Diagnostics diagnostics;
   const auto e = load_experiment(file, diagnostics);
   ASSERT_TRUE(e) << diagnostics.str();
-  EXPECT_TRUE(load_trials(*e, test::scored_registry(), {}, diagnostics)) << diagnostics.str();
+  EXPECT_TRUE(load_trials(*e, test::scored_registry(), diagnostics)) << diagnostics.str();
 }
 
 }  // namespace

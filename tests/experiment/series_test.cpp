@@ -42,6 +42,18 @@ TEST_F(SeriesTest, ChangesGoToTheGraphsThatHaveWhatTheySet) {
   EXPECT_THAT(complaint(sections, {"scal=5"}), HasSubstr("scal"));
 }
 
+TEST_F(SeriesTest, ChangesReplaceWhatExperimentsSetButNotWhatTheyVary) {
+  folder_.write("fixed.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "set": { "scale": 12 } })");
+  const std::string sections = R"({ "title": "Both", "experiments": ["fixed.json", "two.json"] })";
+  Diagnostics diagnostics;
+  const auto both = load_series(series(R"({ "experiments": ["fixed.json"] })"), registry_, {"scale=16"}, diagnostics);
+  ASSERT_TRUE(both) << diagnostics.str();
+  EXPECT_EQ(both->sections[0].parts[0].graphs[0].resolved["nodes"]["score"]["params"]["scale"], 16);
+  EXPECT_THAT(series_page(*both), HasSubstr("In all runs <code>scale=16</code>."));
+  EXPECT_THAT(complaint(sections, {"scale=16"}), HasSubstr("two.json:2:"));
+  EXPECT_THAT(complaint(sections, {"offset"}), HasSubstr("--set takes path=value"));
+}
+
 TEST_F(SeriesTest, MistakesAreLocated) {
   EXPECT_THAT(complaint(""), HasSubstr("at least one section"));
   EXPECT_THAT(complaint(R"({ "titel": "x" })"), HasSubstr("did you mean \"title\""));
