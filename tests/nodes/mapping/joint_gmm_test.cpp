@@ -91,6 +91,70 @@ TEST(JointGmm, DescentComesCloserToTheTrajectoriesThatTheDataWereDrawnFrom) {
   EXPECT_EQ(likeliest.errors[0], refined.errors[0]);
 }
 
+/// Over sound and face with their slopes, as their units have them.
+GaussianMixture in_units(const JointGmm& model) {
+  const Eigen::Index heard = model.sound.dimension(), seen = model.means.cols();
+  Eigen::RowVectorXd deviations(heard + seen), means = Eigen::RowVectorXd::Zero(heard + seen);
+  deviations << model.audio.deviation, model.audio.deviation, model.visual.deviation, model.visual.deviation;
+  means.head(heard / 2) = model.audio.mean;
+  means.segment(heard, seen / 2) = model.visual.mean;
+  GaussianMixture joint{model.sound.weights, Eigen::MatrixXd(model.sound.components(), heard + seen), {}};
+  for (Eigen::Index m = 0; m < joint.components(); ++m) {
+    const Eigen::MatrixXd& regression = model.regressions[static_cast<std::size_t>(m)];
+    const Eigen::MatrixXd& of_sound = model.sound.covariances[static_cast<std::size_t>(m)];
+    joint.means.row(m) << model.sound.means.row(m),
+        model.means.row(m) + model.sound.means.row(m) * regression.transpose();
+    joint.means.row(m) = joint.means.row(m).cwiseProduct(deviations) + means;
+    Eigen::MatrixXd covariance(heard + seen, heard + seen);
+    covariance << of_sound, of_sound * regression.transpose(), regression * of_sound,
+        regression * of_sound * regression.transpose();
+    covariance.diagonal().tail(seen) += model.variances.row(m).transpose();
+    joint.covariances.push_back(deviations.asDiagonal() * covariance * deviations.asDiagonal());
+  }
+  return joint;
+}
+
+TEST(JointGmm, RecoversTheMixtureItsDataWereDrawnFrom) {
+  // Every utterance is of one component, so that slopes too are Gaussian: with half the covariance of the frames.
+  const Eigen::Index frames = 400, utterances = 30;
+  std::vector<Eigen::MatrixXd> roots;
+  Eigen::MatrixXd means(2, 4);
+  means << 0, 0, 5, 5, 2, -1, 6, 2;
+  for (std::uint64_t m = 0; m < 2; ++m) {
+    Eigen::MatrixXd covariance = testing::positive(4, 20 + m, 0.3);
+    // Given the sound, dimensions of the face are independent.
+    const Eigen::MatrixXd regression = covariance.bottomLeftCorner(2, 2) * covariance.topLeftCorner(2, 2).inverse();
+    covariance.bottomRightCorner(2, 2) =
+        regression * covariance.topRightCorner(2, 2) + Eigen::MatrixXd(Eigen::Vector2d(0.3, 0.6).asDiagonal());
+    roots.push_back(covariance.llt().matrixL());
+  }
+  Corpus corpus;
+  for (Eigen::Index u = 0; u < utterances; ++u) {
+    const Eigen::Index m = u % 3 == 0;
+    const Eigen::MatrixXd both =
+        (gaussian(frames, 4, 70 + static_cast<std::uint64_t>(u)) * roots[static_cast<std::size_t>(m)].transpose())
+            .rowwise() +
+        means.row(m);
+    corpus.audio.add(std::to_string(u), track_of(both.leftCols(2)));
+    corpus.visual.add(std::to_string(u), track_of(both.rightCols(2)));
+  }
+  const GaussianMixture found = in_units(trained({.components = 2, .iterations = 100, .descent = 0}, corpus));
+  const std::vector<Eigen::Index> framed{0, 1, 4, 5}, sloped{2, 3, 6, 7};
+  for (Eigen::Index m = 0; m < 2; ++m) {
+    Eigen::Index at = 0;
+    (found.means(Eigen::all, framed).rowwise() - means.row(m)).rowwise().norm().minCoeff(&at);
+    const Eigen::MatrixXd& root = roots[static_cast<std::size_t>(m)];
+    const Eigen::MatrixXd truth = root * root.transpose(), covariance = found.covariances[static_cast<std::size_t>(at)];
+    // The rarer component has 4000 frames: a mean is off by 1.6 % of a deviation, a variance by 2 %.
+    EXPECT_NEAR(found.weights(at), m == 0 ? 2.0 / 3 : 1.0 / 3, 0.02);
+    EXPECT_LT((found.means(at, framed) - means.row(m)).norm(), 0.15);
+    EXPECT_LT(found.means(at, sloped).norm(), 0.1);
+    EXPECT_TRUE(covariance(framed, framed).isApprox(truth, 0.1));
+    EXPECT_TRUE(covariance(sloped, sloped).isApprox(truth / 2, 0.1));
+    EXPECT_LT(covariance(framed, sloped).norm(), 0.1 * truth.norm());
+  }
+}
+
 TEST(JointGmm, OfOneComponentIsLinearRegression) {
   Corpus corpus;
   const Eigen::MatrixXd weights = gaussian(2, 3, 2);

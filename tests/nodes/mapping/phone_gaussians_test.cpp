@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "nodes/mapping/scaling.h"
 #include "tests/nodes/latent/gaussian.h"
 
 namespace talkgraph {
@@ -91,6 +92,19 @@ TEST(PhoneGaussians, DescentFindsTheTrajectoriesThatTheDataWereDrawnFrom) {
             1e-12);
   const double deviations = found.scaling.deviation.cwiseInverse().squaredNorm() / 3;
   EXPECT_NEAR(found.trace.back(), 0.01 * deviations, 0.001 * deviations);
+}
+
+TEST(PhoneGaussians, RecoverThePhonesThatTheDataWereDrawnFrom) {
+  const PhoneGaussians truth = true_model(2);
+  const Corpus corpus = drawn_from(truth, 60, 0.02);
+  Context context;
+  TrainPhoneGaussians train;
+  train.smoothness = truth.smoothness;
+  train.descent = 400;
+  const PhoneGaussians found = train(corpus.visual, corpus.labels, context);
+  // A phone has some 600 frames: noise of 0.02 moves its mean by 0.001, and by more where trajectories are smooth.
+  EXPECT_LT((restored(found.scaling, found.means.topRows(4)) - truth.means.topRows(4)).cwiseAbs().maxCoeff(), 0.02);
+  EXPECT_LT((found.variances.topRows(4).cwiseQuotient(truth.variances.topRows(4)).array() - 1).abs().maxCoeff(), 0.03);
 }
 
 TEST(PhoneGaussians, AreMeansAndVariancesBeforeTheDescent) {

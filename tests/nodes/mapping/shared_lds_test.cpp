@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <limits>
 
@@ -98,6 +100,37 @@ TEST(SharedLds, PredictsNearlyAsWellAsTheSystemItsDataWereDrawnFrom) {
     EXPECT_LT(found, 1.03 * best);
     EXPECT_LT(found, before);
     before = found;
+  }
+}
+
+/// As its streams' units have it, not scaled.
+Lds in_units(SharedLds model) {
+  Eigen::VectorXd deviations(model.audio.deviation.size() + model.visual.deviation.size());
+  deviations << model.audio.deviation.transpose(), model.visual.deviation.transpose();
+  model.system.observation = deviations.asDiagonal() * model.system.observation;
+  model.system.observation_noise = deviations.asDiagonal() * model.system.observation_noise * deviations.asDiagonal();
+  return model.system;
+}
+
+TEST(SharedLds, RecoversTheSystemItsDataWereDrawnFrom) {
+  const Lds system = truth();
+  Context context;
+  const Streams drawn = sample(system, 40, 100, 1);
+  const Lds found = in_units(node()(drawn.audio, drawn.visual, context));
+  // States are known up to a linear map: poles and what is observed of a shock k frames later are not. Of 4000 frames a
+  // pole has a deviation of √((1 − 0.95²)/4000) = 0.005, a variance one of √(2/4000) = 2 %, and more as states are
+  // hidden.
+  const std::complex<double> pole = found.prediction.eigenvalues()(0);
+  EXPECT_NEAR(std::abs(pole), 0.95, 0.015);
+  EXPECT_NEAR(std::abs(std::arg(pole)), 0.4, 0.015);
+  EXPECT_TRUE(found.observation_noise.isApprox(system.observation_noise, 0.1));
+  for (const int k : {0, 1, 4, 8}) {
+    const auto response = [k](const Lds& m) {
+      Eigen::MatrixXd moved = m.prediction_noise * m.observation.transpose();
+      for (int i = 0; i < k; ++i) moved = m.prediction * moved;
+      return Eigen::MatrixXd(m.observation * moved);
+    };
+    EXPECT_TRUE(response(found).isApprox(response(system), 0.15)) << k;
   }
 }
 
