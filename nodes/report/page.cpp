@@ -16,13 +16,16 @@ constexpr const char* kStyle = R"(
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; }
 h1, h2 { line-height: 1.2; }
 .wide { overflow-x: auto; }
-main > .wide { margin-right: min(0px, 50% - 50vw + 1rem); }
+summary { font-weight: 600; cursor: pointer; margin: 1rem 0; }
+details caption { display: none; }
+main > .wide, details > .wide { margin-right: min(0px, 50% - 50vw + 1rem); }
 table { border-collapse: collapse; margin: 1rem 0 2rem; }
 caption { text-align: left; font-weight: 600; padding-bottom: .3rem; }
 th, td { padding: .3rem .7rem; border-bottom: 1px solid #ddd; text-align: right; font-variant-numeric: tabular-nums; }
 th:first-child { text-align: left; }
 td { white-space: nowrap; }
 td small { color: #444; }
+td.best { font-weight: 700; background: #fdeee0; }
 .text, tbody th { text-align: left; white-space: normal; }
 tbody th { font-weight: normal; }
 tr { background: #fff; }
@@ -40,6 +43,8 @@ figcaption { color: #444; }
 .figures small { display: block; color: #555; }
 )";
 
+constexpr std::size_t kMostColumns = 20;  ///< of a table that is not folded
+
 std::string number(double v) { return fmt::format("{:.4g}", v); }
 
 /// The column `name`, or -1.
@@ -54,6 +59,13 @@ bool is_beside_another(const Table& table, std::size_t c) {
   return !score.empty() && column_of(table, score) >= 0;
 }
 
+/// Whether a cell "acc: METHOD" has the value of "acc".
+bool is_the_best(const Table& table, std::size_t row, std::size_t c) {
+  const auto best = column_of(table, table.columns[c].substr(0, table.columns[c].find(": ")));
+  return best >= 0 && static_cast<std::size_t>(best) != c &&
+         table.cells[row][c] == table.cells[row][static_cast<std::size_t>(best)];
+}
+
 std::string cell(const Table& table, std::size_t row, std::size_t c) {
   const double value = shown_number(table.cells[row][c]);
   if (std::isnan(value)) return "<td>–</td>";
@@ -62,7 +74,8 @@ std::string cell(const Table& table, std::size_t row, std::size_t c) {
     return column < 0 ? NAN : table.cells[row][static_cast<std::size_t>(column)];
   };
   const double spread = shown_number(beside(" std"));
-  return "<td>" + (std::isnan(spread) ? number(value) : fmt::format("{:.3g} ± {:.2g}", value, spread)) +
+  return (is_the_best(table, row, c) ? "<td class=\"best\">" : "<td>") +
+         (std::isnan(spread) ? number(value) : fmt::format("{:.3g} ± {:.2g}", value, spread)) +
          html_below(beside(" low"), beside(" high"), beside(" p")) + "</td>";
 }
 
@@ -116,19 +129,22 @@ std::string html_below(double low, double high, double p) {
 }
 
 std::string html_table(const std::string& name, const Table& table) {
-  std::string out =
-      fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr><th scope=\"col\">{}</th>",
-                  escape_markup(table.title.empty() ? name : table.title), escape_markup(table.corner));
+  std::vector<std::size_t> shown;
   for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (!is_beside_another(table, c)) out += "<th scope=\"col\">" + escape_markup(table.columns[c]) + "</th>";
+    if (!is_beside_another(table, c)) shown.push_back(c);
+  const bool folded = shown.size() > kMostColumns;
+  const std::string title = escape_markup(table.title.empty() ? name : table.title);
+  std::string out = folded ? "<details><summary>" + title + "</summary>\n" : "";
+  out += fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr><th scope=\"col\">{}</th>", title,
+                     escape_markup(table.corner));
+  for (const std::size_t c : shown) out += "<th scope=\"col\">" + escape_markup(table.columns[c]) + "</th>";
   out += "</tr></thead>\n<tbody>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     out += "<tr><th scope=\"row\">" + escape_markup(table.rows[r]) + "</th>";
-    for (std::size_t c = 0; c < table.columns.size(); ++c)
-      if (!is_beside_another(table, c)) out += cell(table, r, c);
+    for (const std::size_t c : shown) out += cell(table, r, c);
     out += "</tr>\n";
   }
-  return out + "</tbody>\n</table></div>\n";
+  return out + "</tbody>\n</table></div>\n" + (folded ? "</details>\n" : "");
 }
 
 std::string heading_cell(const std::string& html, std::size_t columns) {

@@ -18,7 +18,8 @@ std::string score_beside(const std::string& column);
 /// What stands below a number in its cell: an interval, and p of a test; NaN leaves either out.
 std::string html_below(double low, double high, double p);
 /// A table with its title as caption; a column shares its cells with those that say more of it: "0.59 ± 0.08", and the
-/// interval and p below.
+/// interval and p below. A cell of "acc: METHOD" that is as "acc" in its row is the best and stands out. More than
+/// twenty columns are folded.
 std::string html_table(const std::string& name, const Table& table);
 /// A table of cells, which the three below make of HTML; a heading stands where the cells below it do.
 std::string html_table(const std::string& caption, const std::vector<std::string>& head,

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "nodes/statistics/sequence_scores.h"
@@ -47,30 +49,148 @@ Table described(const CompareMethods& settings, const Collected<Table>& methods,
   return out;
 }
 
-Table paired(const CompareMethods& settings, const Collected<Table>& methods, const std::vector<bool>& tested,
-             const std::vector<std::string>& names) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t i = 0; i < methods.size(); ++i)
-    for (std::size_t j = i + 1; j < methods.size(); ++j)
+/// Tests of pairs of methods by one score.
+struct PairTests {
+  std::vector<std::vector<double>> differences;
+  std::vector<double> p;  ///< corrected over the pairs
+};
+
+using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+Pairs pairs_of(const std::vector<bool>& tested) {
+  Pairs pairs;
+  for (std::size_t i = 0; i < tested.size(); ++i)
+    for (std::size_t j = i + 1; j < tested.size(); ++j)
       if (tested[i] && tested[j]) pairs.emplace_back(i, j);
+  return pairs;
+}
+
+std::vector<SequenceScores> scores_by_method(const Collected<Table>& methods, const std::string& name) {
+  std::vector<SequenceScores> scores;
+  for (std::size_t i = 0; i < methods.size(); ++i) scores.push_back(sequence_scores(methods[i], name));
+  return scores;
+}
+
+PairTests test_pairs(const Pairs& pairs, const std::vector<SequenceScores>& scores, Correction correction) {
+  PairTests tests;
+  for (const auto& [i, j] : pairs) {
+    tests.differences.push_back(paired_differences(scores[i], scores[j]));
+    tests.p.push_back(p_of(tests.differences.back()));
+  }
+  tests.p = corrected(tests.p, correction);
+  return tests;
+}
+
+Table paired(const CompareMethods& settings, const Collected<Table>& methods, const Pairs& pairs,
+             const std::vector<std::string>& names) {
   Table out{settings.title + ": differences", "pair", {}, {}, std::vector<std::vector<double>>(pairs.size())};
   for (const auto& [i, j] : pairs) out.rows.push_back(methods.key(i) + " - " + methods.key(j));
   for (const auto& name : names) {
     for (const char* what : {"", " p", " effect"}) out.columns.push_back(name + what);
-    std::vector<SequenceScores> scores;
-    for (std::size_t i = 0; i < methods.size(); ++i) scores.push_back(sequence_scores(methods[i], name));
-    std::vector<std::vector<double>> differences;
-    std::vector<double> p;
-    for (const auto& [i, j] : pairs) {
-      differences.push_back(paired_differences(scores[i], scores[j]));
-      p.push_back(p_of(differences.back()));
-    }
-    p = corrected(p, settings.correction);
+    const auto [differences, p] = test_pairs(pairs, scores_by_method(methods, name), settings.correction);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const double effect = differences[k].empty() ? NAN : signed_rank(differences[k]).effect;
       out.cells[k].insert(out.cells[k].end(), {mean_of(differences[k]), p[k], effect});
     }
   }
+  return out;
+}
+
+/// A score that methods are ranked by.
+struct Ranking {
+  std::string score;
+  double sign;  ///< 1 if the larger is better, -1 if the smaller
+};
+
+std::vector<Ranking> rankings_of(const CompareMethods& settings, const Collected<Table>& methods) {
+  std::vector<Ranking> rankings;
+  std::vector<std::string> names;
+  for (const double sign : {1.0, -1.0})
+    for (const auto& score : sign > 0 ? settings.larger_better : settings.smaller_better) {
+      if (std::find(names.begin(), names.end(), score) != names.end())
+        throw std::runtime_error(fmt::format("methods are ranked by \"{}\" twice", score));
+      names.push_back(score);
+      rankings.push_back({score, sign});
+    }
+  scores_of(methods, names);
+  return rankings;
+}
+
+/// The best score of each sequence that a tested method has.
+SequenceScores best_scores(const std::vector<SequenceScores>& scores, const std::vector<bool>& tested, double sign) {
+  SequenceScores best;
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    for (const auto& [sequence, value] : scores[i])
+      if (tested[i]) {
+        const auto at = best.emplace(sequence, value).first;
+        if (sign * value > sign * at->second) at->second = value;
+      }
+  return best;
+}
+
+double value_or_nan(const SequenceScores& scores, const std::string& sequence) {
+  const auto found = scores.find(sequence);
+  return found == scores.end() ? NAN : found->second;
+}
+
+Table by_sequence(const CompareMethods& settings, const Collected<Table>& methods, const std::vector<bool>& tested,
+                  const std::vector<Ranking>& rankings) {
+  Table out{settings.title + ": each sequence", "sequence", {}, {}, {}};
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    for (const auto& sequence : methods[i].rows)
+      if (seen.insert(sequence).second) out.rows.push_back(sequence);
+  out.cells.resize(out.rows.size());
+  const auto add = [&](const std::string& column, const SequenceScores& scores) {
+    out.columns.push_back(column);
+    for (std::size_t r = 0; r < out.rows.size(); ++r) out.cells[r].push_back(value_or_nan(scores, out.rows[r]));
+  };
+  for (const auto& [name, sign] : rankings) {
+    const auto scores = scores_by_method(methods, name);
+    add(name, best_scores(scores, tested, sign));
+    for (std::size_t i = 0; i < methods.size(); ++i) add(name + ": " + methods.key(i), scores[i]);
+  }
+  return out;
+}
+
+/// The tested method of the best mean; none if no method has a score.
+std::optional<std::size_t> best_of(const std::vector<SequenceScores>& scores, const std::vector<bool>& tested,
+                                   double sign) {
+  std::optional<std::size_t> best;
+  double most = -INFINITY;
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    if (const double mean = sign * mean_of(values_of(scores[i])); tested[i] && mean > most) best = i, most = mean;
+  return best;
+}
+
+Table behind_best(const CompareMethods& settings, const Collected<Table>& methods, const std::vector<bool>& tested,
+                  const Pairs& pairs, const std::vector<Ranking>& rankings) {
+  Table out{settings.title + ": behind the best (p over all pairs), and sequences won", "method", {}, {}, {}};
+  std::vector<std::vector<double>> cells(methods.size());
+  for (const auto& [name, sign] : rankings) {
+    for (const char* what : {" behind", " behind p", " won"}) out.columns.push_back(name + what);
+    const auto scores = scores_by_method(methods, name);
+    const auto tests = test_pairs(pairs, scores, settings.correction);
+    const auto best = best_of(scores, tested, sign);
+    std::vector<double> behind(methods.size(), NAN), p(methods.size(), NAN);
+    if (best) behind[*best] = 0;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto [i, j] = pairs[k];
+      if (i != best && j != best) continue;
+      const std::size_t other = i == best ? j : i;
+      behind[other] = (i == best ? sign : -sign) * mean_of(tests.differences[k]);
+      p[other] = tests.p[k];
+    }
+    const auto bests = best_scores(scores, tested, sign);
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+      const auto won = std::count_if(scores[i].begin(), scores[i].end(), [&](const auto& score) {
+        return score.second == value_or_nan(bests, score.first);
+      });
+      cells[i].insert(cells[i].end(), {behind[i], p[i], static_cast<double>(won)});
+    }
+  }
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    if (tested[i]) out.rows.push_back(methods.key(i)), out.cells.push_back(std::move(cells[i]));
   return out;
 }
 
@@ -85,7 +205,10 @@ CompareMethods::Out CompareMethods::operator()(const Collected<Table>& sequences
       if (sequences.key(i) == name) tested[i] = false;
   }
   const auto names = scores_of(sequences, scores);
-  return {described(*this, sequences, tested, names, random), paired(*this, sequences, tested, names)};
+  const auto rankings = rankings_of(*this, sequences);
+  const Pairs pairs = pairs_of(tested);
+  return {described(*this, sequences, tested, names, random), paired(*this, sequences, pairs, names),
+          by_sequence(*this, sequences, tested, rankings), behind_best(*this, sequences, tested, pairs, rankings)};
 }
 
 void describe(Description<CompareMethods>& d) {
@@ -94,10 +217,17 @@ void describe(Description<CompareMethods>& d) {
   d.input("sequences", "an object of named tables of evaluate.sequences, one a method");
   d.output("table", &CompareMethods::Out::table, "a row a method; of each score x: x, x std, x low, x high, x p");
   d.output("pairs", &CompareMethods::Out::pairs, "a row a pair of methods; of each score x: x, x p, x effect");
+  d.output("sequences", &CompareMethods::Out::sequences,
+           "a row a sequence; of each score x to rank by: x, the best of all methods, and x: METHOD of each");
+  d.output("best", &CompareMethods::Out::best,
+           "a row a method; of each score x to rank by: x behind the best method's, x behind p, x won: sequences");
   d.param("scores", &CompareMethods::scores).doc("which, in the order of the columns; empty: all");
   d.param("against", &CompareMethods::against)
       .doc("method that each other is tested against by Wilcoxon's signed-rank test over sequences; empty: none");
   d.param("aside", &CompareMethods::aside).doc("methods that are described, not tested, such as the recorded face");
+  d.param("larger_better", &CompareMethods::larger_better)
+      .doc("scores to rank by, better the larger they are: what `sequences` and `best` tell of");
+  d.param("smaller_better", &CompareMethods::smaller_better).doc("scores to rank by, better the smaller they are");
   d.param("confidence", &CompareMethods::confidence).within(0.5, 0.999).doc("of the intervals");
   d.param("interval", &CompareMethods::interval)
       .doc("of the mean: Student's t, or quantiles of bootstrap samples, which need no normal scores");

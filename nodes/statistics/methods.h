@@ -10,12 +10,15 @@ namespace talkgraph {
 
 /// Compares methods by their scores of each sequence. Tests are Wilcoxon's signed-rank test, sequence by sequence
 /// (signed_rank.h), over the sequences that have both scores; NaN where none has. Throws std::runtime_error if the
-/// tables' columns differ, a sequence is there twice, a score is infinite or unknown, or a method named here is not
-/// there.
+/// tables' columns differ, a sequence is there twice, a score is infinite or unknown, a method named here is not there,
+/// or methods
+/// are ranked by a score twice.
 struct CompareMethods {
   std::vector<std::string> scores = {};  ///< columns, in their order; empty: all
   std::string against = {};
   std::vector<std::string> aside = {};
+  std::vector<std::string> larger_better = {};   ///< scores to rank methods by
+  std::vector<std::string> smaller_better = {};  ///< scores to rank methods by
   double confidence = 0.95;
   IntervalKind interval = IntervalKind::student;
   int samples = 10000;
@@ -36,6 +39,16 @@ struct CompareMethods {
     ///   x p       of the test, corrected over the pairs for this score
     ///   x effect  matched-pairs rank-biserial correlation: 1 if A's score is the larger one in every sequence
     Table pairs;
+    /// A row a sequence that any method has. Of each ranked score x:
+    ///   x           the best of all methods, those of `aside` left out
+    ///   x: METHOD   of each method, also those of `aside`; NaN if it has none there
+    Table sequences;
+    /// A row a method, those of `aside` left out. Of each ranked score, the best method being that of the best mean:
+    ///   x behind    mean difference to the best method over the sequences that have both, above 0 if this one is
+    ///               worse; 0 of the best one
+    ///   x behind p  as in `pairs`, corrected over all of them, for the same scores chose the best; NaN of the best one
+    ///   x won       sequences in which no other method is better
+    Table best;
   };
   Out operator()(const Collected<Table>& sequences, Random& random) const;
 };

@@ -74,6 +74,31 @@ TEST_F(Report, ShowsMeansWithTheirDeviations) {
   EXPECT_THAT(html, HasSubstr("<td>0.25</td><td>–</td>"));
 }
 
+TEST_F(Report, FoldsWideTables) {
+  Table wide{"A < B", "sequence", {}, {"s1"}, {{}}};
+  const auto add = [&](const std::string& column) {
+    wide.columns.push_back(column);
+    wide.cells[0].push_back(1);
+  };
+  for (int i = 0; i < 20; ++i) add("acc: " + std::to_string(i));
+  add("acc: 0 std");
+  EXPECT_THAT(html_table("t", wide), testing::Not(HasSubstr("<details>"))) << "twenty are shown";
+  add("acc: 20");
+  const std::string html = html_table("t", wide);
+  EXPECT_THAT(html, testing::StartsWith("<details><summary>A &lt; B</summary>\n<div class=\"wide\"><table>"));
+  EXPECT_THAT(html, testing::EndsWith("</table></div>\n</details>\n"));
+}
+
+TEST_F(Report, MarksTheBest) {
+  const std::string html = html_table("t", {"",
+                                            "sequence",
+                                            {"acc", "acc: a", "acc: b", "lag: a"},
+                                            {"s1", "s2"},
+                                            {{0.5, 0.25, 0.5, 0.5}, {NAN, NAN, 0.5, 0.5}}});
+  EXPECT_THAT(html, HasSubstr("<td>0.5</td><td>0.25</td><td class=\"best\">0.5</td><td>0.5</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>–</td><td>–</td><td>0.5</td><td>0.5</td>"));
+}
+
 TEST_F(Report, ShowsIntervalsAndTestsBelowTheirMeans) {
   const std::string html = html_table("t", {"",
                                             "method",

@@ -65,6 +65,83 @@ TEST(CompareMethods, ComparesEveryPair) {
   EXPECT_NEAR(cell(t, "ridge - SSGPDM", "acc effect"), -19 / 21.0, 1e-12);
 }
 
+TEST(CompareMethods, TellsEachSequence) {
+  const Table t =
+      compare({.scores = {"error"}, .aside = {"recorded"}, .larger_better = {"acc"}, .smaller_better = {"error"}})
+          .sequences;
+  EXPECT_EQ(t.corner, "sequence");
+  EXPECT_EQ(t.rows, (std::vector<std::string>{"a", "b", "c", "d", "e", "f"}));
+  EXPECT_EQ(t.columns,
+            (std::vector<std::string>{"acc", "acc: recorded", "acc: mean", "acc: ridge", "acc: SSGPDM", "error",
+                                      "error: recorded", "error: mean", "error: ridge", "error: SSGPDM"}));
+  EXPECT_EQ(t.cells[1], (std::vector<double>{0.75, 1, 0, 0.5, 0.75, 0, 2, 0, 1, 1.5}));
+  EXPECT_EQ(cell(t, "c", "acc"), 0.6) << "of ridge";
+}
+
+TEST(CompareMethods, TestsTheBestAgainstAllOthers) {
+  const auto out = compare({.aside = {"recorded"}, .larger_better = {"acc"}, .smaller_better = {"error"}});
+  const Table& t = out.best;
+  EXPECT_EQ(t.rows, (std::vector<std::string>{"mean", "ridge", "SSGPDM"}));
+  EXPECT_EQ(t.columns, (std::vector<std::string>{"acc behind", "acc behind p", "acc won", "error behind",
+                                                 "error behind p", "error won"}));
+  EXPECT_EQ(cell(t, "SSGPDM", "acc behind"), 0);
+  EXPECT_TRUE(std::isnan(cell(t, "SSGPDM", "acc behind p")));
+  EXPECT_NEAR(cell(t, "mean", "acc behind"), 3.8 / 6, 1e-12);
+  EXPECT_NEAR(cell(t, "ridge", "acc behind"), 1.3 / 6, 1e-12);
+  // Three pairs: p = 2/64 twice, 4/64. Holm: times 3, times 2 or as much, times 1 or as much.
+  EXPECT_NEAR(cell(t, "mean", "acc behind p"), 6 / 64.0, 1e-12);
+  EXPECT_NEAR(cell(t, "ridge", "acc behind p"), 6 / 64.0, 1e-12);
+  EXPECT_EQ(cell(t, "ridge", "acc behind p"), cell(out.pairs, "ridge - SSGPDM", "acc p"));
+  EXPECT_EQ(cell(t, "SSGPDM", "acc won"), 5);
+  EXPECT_EQ(cell(t, "ridge", "acc won"), 1);
+  EXPECT_EQ(cell(t, "mean", "acc won"), 0);
+  // By the least error the mean is best, and ridge is before the SSGPDM.
+  EXPECT_EQ(cell(t, "mean", "error behind"), 0);
+  EXPECT_NEAR(cell(t, "ridge", "error behind"), 5 / 6.0, 1e-12);
+  EXPECT_NEAR(cell(t, "SSGPDM", "error behind"), 7.6 / 6, 1e-12);
+  EXPECT_EQ(cell(t, "mean", "error won"), 6);
+}
+
+TEST(CompareMethods, RanksMethodsOfDifferentSequences) {
+  Table few = scores({0.9, 0.95, 0.6});
+  few.rows = {"b", "g", "a"};
+  few.cells[1][0] = NAN;  // g has no acc of any method
+  const auto out = compare({.larger_better = {"acc"}}, {{"few", few}, {"ridge", kMethods[2]}, {"SSGPDM", kMethods[3]}});
+  EXPECT_EQ(out.sequences.rows, (std::vector<std::string>{"b", "g", "a", "c", "d", "e", "f"}));
+  EXPECT_TRUE(std::isnan(cell(out.sequences, "g", "acc: few")));
+  EXPECT_TRUE(std::isnan(cell(out.sequences, "g", "acc"))) << "that nobody has";
+  EXPECT_TRUE(std::isnan(cell(out.sequences, "c", "acc: few")));
+  EXPECT_EQ(cell(out.sequences, "c", "acc: ridge"), 0.6);
+  EXPECT_EQ(cell(out.best, "few", "acc behind"), 0) << "of mean 0.75";
+  EXPECT_NEAR(cell(out.best, "SSGPDM", "acc behind"), (0 + 0.15) / 2, 1e-12);
+  EXPECT_EQ(cell(out.best, "few", "acc won"), 2) << "one of them with the SSGPDM";
+  EXPECT_EQ(cell(out.best, "SSGPDM", "acc won"), 4);
+  EXPECT_EQ(cell(out.best, "ridge", "acc won"), 1);
+}
+
+TEST(CompareMethods, RanksOneMethodAndOneSequence) {
+  const auto alone = compare({.larger_better = {"acc"}}, {{"ridge", kMethods[2]}});
+  EXPECT_EQ(alone.best.rows, (std::vector<std::string>{"ridge"}));
+  EXPECT_EQ(cell(alone.best, "ridge", "acc behind"), 0);
+  EXPECT_TRUE(std::isnan(cell(alone.best, "ridge", "acc behind p")));
+  EXPECT_EQ(cell(alone.best, "ridge", "acc won"), 6);
+
+  const auto one = compare({.larger_better = {"acc"}}, {{"a", scores({0.5})}, {"b", scores({0.25})}});
+  EXPECT_EQ(one.sequences.cells, (std::vector<std::vector<double>>{{0.5, 0.5, 0.25}}));
+  EXPECT_EQ(cell(one.best, "b", "acc behind"), 0.25);
+  EXPECT_EQ(cell(one.best, "b", "acc behind p"), 1);
+
+  const auto aside = compare({.aside = {"a"}, .larger_better = {"acc"}}, {{"a", scores({0.5})}});
+  EXPECT_TRUE(aside.best.rows.empty());
+  EXPECT_EQ(aside.sequences.rows.size(), 1u);
+}
+
+TEST(CompareMethods, RanksByNothingUnlessTold) {
+  const auto out = compare({.against = "SSGPDM"});
+  EXPECT_TRUE(out.sequences.columns.empty());
+  EXPECT_TRUE(out.best.columns.empty());
+}
+
 TEST(CompareMethods, PairsSequencesByTheirNamesAndLeavesOutWhatIsMissing) {
   Table few = scores({0.1, 0.2, 0.3, 0.4});
   few.rows = {"f", "e", "d", "a"};
@@ -80,10 +157,14 @@ TEST(CompareMethods, WithoutAnythingToCompare) {
   const auto none = compare({}, {});
   EXPECT_TRUE(none.table.rows.empty());
   EXPECT_TRUE(none.pairs.rows.empty());
-  const auto empty = compare({.against = "a"}, {{"a", scores({})}, {"b", scores({})}});
+  EXPECT_TRUE(none.sequences.rows.empty());
+  const auto empty = compare({.against = "a", .larger_better = {"acc"}}, {{"a", scores({})}, {"b", scores({})}});
   EXPECT_TRUE(std::isnan(cell(empty.table, "b", "acc p")));
   EXPECT_TRUE(std::isnan(cell(empty.table, "b", "acc")));
   EXPECT_TRUE(std::isnan(cell(empty.pairs, "a - b", "acc effect")));
+  EXPECT_TRUE(std::isnan(cell(empty.best, "a", "acc behind"))) << "there is no best one";
+  EXPECT_TRUE(std::isnan(cell(empty.best, "b", "acc behind p")));
+  EXPECT_EQ(cell(empty.best, "a", "acc won"), 0);
 }
 
 TEST(CompareMethods, BootstrapsIntervals) {
@@ -98,6 +179,9 @@ TEST(CompareMethods, RefusesWhatDoesNotFit) {
   EXPECT_THROW(compare({.against = "HMM"}), std::runtime_error);
   EXPECT_THROW(compare({.aside = {"HMM"}}), std::runtime_error);
   EXPECT_THROW(compare({.scores = {"amse"}}), std::runtime_error);
+  EXPECT_THROW(compare({.larger_better = {"amse"}}), std::runtime_error);
+  EXPECT_THROW(compare({.larger_better = {"acc"}, .smaller_better = {"acc"}}), std::runtime_error);
+  EXPECT_THROW(compare({.smaller_better = {"error", "error"}}), std::runtime_error);
   Table other = scores({1});
   other.columns[1] = "amse";
   EXPECT_THROW(compare({}, {{"a", scores({1})}, {"b", other}}), std::runtime_error);
