@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "nodes/plot/svg.h"
+#include "nodes/statistics/sequence_scores.h"
 
 namespace talkgraph {
 namespace {
@@ -63,7 +64,7 @@ bool is_beside_another(const Table& table, std::size_t c) {
 bool is_the_best(const Table& table, std::size_t row, std::size_t c) {
   const auto best = column_of(table, table.columns[c].substr(0, table.columns[c].find(": ")));
   return best >= 0 && static_cast<std::size_t>(best) != c &&
-         table.cells[row][c] == table.cells[row][static_cast<std::size_t>(best)];
+         same_score(table.cells[row][c], table.cells[row][static_cast<std::size_t>(best)]);
 }
 
 std::string cell(const Table& table, std::size_t row, std::size_t c) {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 
@@ -128,6 +128,22 @@ SequenceScores best_scores(const std::vector<SequenceScores>& scores, const std:
   return best;
 }
 
+/// The mean of each method, turned so that the larger is better; -∞ of those that are not ranked.
+std::vector<double> ranked_means(const std::vector<SequenceScores>& scores, const std::vector<bool>& tested,
+                                 double sign) {
+  std::vector<double> means;
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    means.push_back(tested[i] && !scores[i].empty() ? sign * mean_of(values_of(scores[i])) : -INFINITY);
+  return means;
+}
+
+std::vector<std::size_t> best_first(const std::vector<double>& means) {
+  std::vector<std::size_t> order(means.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return means[a] > means[b]; });
+  return order;
+}
+
 double value_or_nan(const SequenceScores& scores, const std::string& sequence) {
   const auto found = scores.find(sequence);
   return found == scores.end() ? NAN : found->second;
@@ -148,19 +164,10 @@ Table by_sequence(const CompareMethods& settings, const Collected<Table>& method
   for (const auto& [name, sign] : rankings) {
     const auto scores = scores_by_method(methods, name);
     add(name, best_scores(scores, tested, sign));
-    for (std::size_t i = 0; i < methods.size(); ++i) add(name + ": " + methods.key(i), scores[i]);
+    for (const std::size_t i : best_first(ranked_means(scores, tested, sign)))
+      add(name + ": " + methods.key(i), scores[i]);
   }
   return out;
-}
-
-/// The tested method of the best mean; none if no method has a score.
-std::optional<std::size_t> best_of(const std::vector<SequenceScores>& scores, const std::vector<bool>& tested,
-                                   double sign) {
-  std::optional<std::size_t> best;
-  double most = -INFINITY;
-  for (std::size_t i = 0; i < scores.size(); ++i)
-    if (const double mean = sign * mean_of(values_of(scores[i])); tested[i] && mean > most) best = i, most = mean;
-  return best;
 }
 
 Table behind_best(const CompareMethods& settings, const Collected<Table>& methods, const std::vector<bool>& tested,
@@ -171,20 +178,22 @@ Table behind_best(const CompareMethods& settings, const Collected<Table>& method
     for (const char* what : {" behind", " behind p", " won"}) out.columns.push_back(name + what);
     const auto scores = scores_by_method(methods, name);
     const auto tests = test_pairs(pairs, scores, settings.correction);
-    const auto best = best_of(scores, tested, sign);
+    const auto means = ranked_means(scores, tested, sign);
+    const auto best = static_cast<std::size_t>(std::max_element(means.begin(), means.end()) - means.begin());
     std::vector<double> behind(methods.size(), NAN), p(methods.size(), NAN);
-    if (best) behind[*best] = 0;
+    if (best < means.size() && means[best] > -INFINITY) behind[best] = 0;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const auto [i, j] = pairs[k];
       if (i != best && j != best) continue;
       const std::size_t other = i == best ? j : i;
-      behind[other] = (i == best ? sign : -sign) * mean_of(tests.differences[k]);
+      const double difference = mean_of(tests.differences[k]);
+      behind[other] = (i == best) == (sign > 0) ? difference : 0 - difference;  // never -0
       p[other] = tests.p[k];
     }
     const auto bests = best_scores(scores, tested, sign);
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const auto won = std::count_if(scores[i].begin(), scores[i].end(), [&](const auto& score) {
-        return score.second == value_or_nan(bests, score.first);
+        return same_score(score.second, value_or_nan(bests, score.first));
       });
       cells[i].insert(cells[i].end(), {behind[i], p[i], static_cast<double>(won)});
     }
@@ -212,13 +221,15 @@ CompareMethods::Out CompareMethods::operator()(const Collected<Table>& sequences
 }
 
 void describe(Description<CompareMethods>& d) {
-  d.type("statistics.methods").summary("one table of all methods: means, spread, confidence intervals, significance");
+  d.type("statistics.methods")
+      .version(2)
+      .summary("one table of all methods: means, spread, confidence intervals, significance");
   d.source("Student 1908; Efron 1979; Wilcoxon 1945; Holm 1979; Benjamini & Hochberg 1995");
   d.input("sequences", "an object of named tables of evaluate.sequences, one a method");
   d.output("table", &CompareMethods::Out::table, "a row a method; of each score x: x, x std, x low, x high, x p");
   d.output("pairs", &CompareMethods::Out::pairs, "a row a pair of methods; of each score x: x, x p, x effect");
   d.output("sequences", &CompareMethods::Out::sequences,
-           "a row a sequence; of each score x to rank by: x, the best of all methods, and x: METHOD of each");
+           "a row a sequence; of each score x to rank by: x, the best of all methods, and x: METHOD, the best first");
   d.output("best", &CompareMethods::Out::best,
            "a row a method; of each score x to rank by: x behind the best method's, x behind p, x won: sequences");
   d.param("scores", &CompareMethods::scores).doc("which, in the order of the columns; empty: all");

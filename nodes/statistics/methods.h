@@ -41,7 +41,8 @@ struct CompareMethods {
     Table pairs;
     /// A row a sequence that any method has. Of each ranked score x:
     ///   x           the best of all methods, those of `aside` left out
-    ///   x: METHOD   of each method, also those of `aside`; NaN if it has none there
+    ///   x: METHOD   of each method, from the best mean to the worst, then of those of `aside`; NaN if it has none
+    ///   there
     Table sequences;
     /// A row a method, those of `aside` left out. Of each ranked score, the best method being that of the best mean:
     ///   x behind    mean difference to the best method over the sequences that have both, above 0 if this one is

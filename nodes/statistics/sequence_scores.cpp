@@ -31,7 +31,8 @@ std::vector<double> values_of(const SequenceScores& scores) {
 std::vector<double> paired_differences(const SequenceScores& a, const SequenceScores& b) {
   std::vector<double> differences;
   for (const auto& [sequence, value] : a)
-    if (const auto other = b.find(sequence); other != b.end()) differences.push_back(value - other->second);
+    if (const auto other = b.find(sequence); other != b.end())
+      differences.push_back(same_score(value, other->second) ? 0 : value - other->second);
   return differences;
 }
 

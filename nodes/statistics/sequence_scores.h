@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,7 +17,10 @@ SequenceScores sequence_scores(const Table& table, const std::string& score);
 
 std::vector<double> values_of(const SequenceScores& scores);
 
-/// a − b of each sequence that has both.
+/// Whether two scores differ by no more than rounding; false of NaN.
+inline bool same_score(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b)); }
+
+/// a − b of each sequence that has both, 0 if they are the same.
 std::vector<double> paired_differences(const SequenceScores& a, const SequenceScores& b);
 
 /// `wanted`, or all columns if it is empty. Throws std::runtime_error if the tables' columns differ, one that is wanted

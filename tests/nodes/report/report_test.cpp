@@ -94,7 +94,7 @@ TEST_F(Report, MarksTheBest) {
                                             "sequence",
                                             {"acc", "acc: a", "acc: b", "lag: a"},
                                             {"s1", "s2"},
-                                            {{0.5, 0.25, 0.5, 0.5}, {NAN, NAN, 0.5, 0.5}}});
+                                            {{0.5, 0.25, 0.5 - 1e-16, 0.5}, {NAN, NAN, 0.5, 0.5}}});
   EXPECT_THAT(html, HasSubstr("<td>0.5</td><td>0.25</td><td class=\"best\">0.5</td><td>0.5</td>"));
   EXPECT_THAT(html, HasSubstr("<td>–</td><td>–</td><td>0.5</td><td>0.5</td>"));
 }

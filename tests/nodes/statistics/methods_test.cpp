@@ -72,9 +72,9 @@ TEST(CompareMethods, TellsEachSequence) {
   EXPECT_EQ(t.corner, "sequence");
   EXPECT_EQ(t.rows, (std::vector<std::string>{"a", "b", "c", "d", "e", "f"}));
   EXPECT_EQ(t.columns,
-            (std::vector<std::string>{"acc", "acc: recorded", "acc: mean", "acc: ridge", "acc: SSGPDM", "error",
-                                      "error: recorded", "error: mean", "error: ridge", "error: SSGPDM"}));
-  EXPECT_EQ(t.cells[1], (std::vector<double>{0.75, 1, 0, 0.5, 0.75, 0, 2, 0, 1, 1.5}));
+            (std::vector<std::string>{"acc", "acc: SSGPDM", "acc: ridge", "acc: mean", "acc: recorded", "error",
+                                      "error: mean", "error: ridge", "error: SSGPDM", "error: recorded"}));
+  EXPECT_EQ(t.cells[1], (std::vector<double>{0.75, 0.75, 0.5, 0, 1, 0, 0, 1, 1.5, 2}));
   EXPECT_EQ(cell(t, "c", "acc"), 0.6) << "of ridge";
 }
 
@@ -134,6 +134,21 @@ TEST(CompareMethods, RanksOneMethodAndOneSequence) {
   const auto aside = compare({.aside = {"a"}, .larger_better = {"acc"}}, {{"a", scores({0.5})}});
   EXPECT_TRUE(aside.best.rows.empty());
   EXPECT_EQ(aside.sequences.rows.size(), 1u);
+}
+
+// A face of full range correlates as the one that it is made of, but for rounding.
+TEST(CompareMethods, TakesWhatRoundingLeavesForEqual) {
+  const std::vector<double> acc = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+  std::vector<double> above = acc;
+  for (double& value : above) value *= 1 + 1e-15;
+  const auto out = compare({.against = "a", .larger_better = {"acc"}}, {{"a", scores(acc)}, {"b", scores(above)}});
+  EXPECT_EQ(cell(out.table, "b", "acc p"), 1);
+  EXPECT_EQ(cell(out.pairs, "a - b", "acc"), 0);
+  EXPECT_EQ(cell(out.pairs, "a - b", "acc effect"), 0);
+  EXPECT_EQ(cell(out.best, "a", "acc behind"), 0);
+  EXPECT_FALSE(std::signbit(cell(out.best, "a", "acc behind")));
+  EXPECT_EQ(cell(out.best, "a", "acc won"), 6);
+  EXPECT_EQ(cell(out.best, "b", "acc won"), 6);
 }
 
 TEST(CompareMethods, RanksByNothingUnlessTold) {
