@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <regex>
@@ -48,6 +49,27 @@ TEST(Experiments, AreSound) {
     ++count;
   }
   EXPECT_GT(count, 0u);
+}
+
+TEST(Experiments, OfAllMethodsTellWhoIsBestAndWhere) {
+  const Registry registry = all_nodes();
+  for (const std::string table : {"table-6-1-", "table-6-2-"})
+    for (const std::string of : {"grid-s1", "lips", "demnow"}) {
+      Diagnostics diagnostics;
+      const auto experiment =
+          load_experiment(test::source("/pipelines/experiments/") + table + of + ".json", diagnostics);
+      ASSERT_TRUE(experiment) << diagnostics.str();
+      const auto graphs = load_trials(*experiment, registry, {}, diagnostics);
+      ASSERT_TRUE(graphs) << diagnostics.str();
+      const bool mouths = of == "grid-s1";
+      const auto& names = experiment->tabulate.names;
+      EXPECT_EQ(std::count(names.begin(), names.end(), "best"), 1) << table + of;
+      EXPECT_EQ(std::count(names.begin(), names.end(), "mouths_best"), mouths) << table + of;
+      for (const auto& graph : *graphs) {
+        EXPECT_TRUE(graph.resolved["nodes"].contains("face/write_sequences"));
+        EXPECT_EQ(graph.resolved["nodes"].contains("face/write_mouth_sequences"), mouths);
+      }
+    }
 }
 
 TEST(Experiments, OfSpeechWriteNothing) {
