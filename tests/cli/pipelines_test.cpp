@@ -59,7 +59,7 @@ TEST(Experiments, OfAllMethodsTellWhoIsBestAndWhere) {
       const auto experiment =
           load_experiment(test::source("/pipelines/experiments/") + table + of + ".json", diagnostics);
       ASSERT_TRUE(experiment) << diagnostics.str();
-      const auto graphs = load_trials(*experiment, registry, {}, diagnostics);
+      const auto graphs = load_trials(*experiment, registry, diagnostics);
       ASSERT_TRUE(graphs) << diagnostics.str();
       const bool mouths = of == "grid-s1";
       const auto& names = experiment->tabulate.names;
