@@ -172,7 +172,7 @@ Table by_sequence(const CompareMethods& settings, const Collected<Table>& method
 
 Table behind_best(const CompareMethods& settings, const Collected<Table>& methods, const std::vector<bool>& tested,
                   const Pairs& pairs, const std::vector<Ranking>& rankings) {
-  Table out{settings.title + ": behind the best (p over all pairs), and sequences won", "method", {}, {}, {}};
+  Table out{settings.title + ": behind the best, and sequences won", "method", {}, {}, {}};
   std::vector<std::vector<double>> cells(methods.size());
   for (const auto& [name, sign] : rankings) {
     for (const char* what : {" behind", " behind p", " won"}) out.columns.push_back(name + what);
