@@ -41,6 +41,7 @@ constexpr Method methods[] = {
     {"SSGPDM, phones as states", "learnt_phones", "phone_states"},
     {"SSGPDM", "learnt", "said"},
     {"soft contexts", "soft", "soft_said"},
+    {"soft contexts, learnt kernel", "soft_learnt", "soft_learnt_said"},
 };
 
 using nlohmann::json;
