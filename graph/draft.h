@@ -61,7 +61,7 @@ std::shared_ptr<const SourceText> read_graph(const LocatedJson& file, Diagnostic
 
 /// A graph or an experiment; where it extends another file, that one with this one laid over it. `open` names the files
 /// that lead here, so that none extends itself.
-std::optional<LocatedJson> parse_extended(std::shared_ptr<const SourceText> text, std::vector<std::string>& open,
+std::optional<LocatedJson> parse_extended(const std::shared_ptr<const SourceText>& text, std::vector<std::string>& open,
                                           Diagnostics& diagnostics);
 
 /// What a file of that path holds, with what it extends.

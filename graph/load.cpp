@@ -182,7 +182,7 @@ void apply(const Setting& setting, LocatedJson& graph, const std::string& where,
   }
   // Of an input that has no wire the null stays, so that the node is asked whether it has such an input.
   if (takes_away && there)
-    std::erase_if(parent->members, [&](const LocatedJson::Member& m) { return m.key == path.back(); });
+    std::erase_if(parent->members, [&name = path.back()](const auto& m) { return m.key == name; });
   else
     *at = value;
 }
@@ -460,7 +460,7 @@ std::shared_ptr<const SourceText> read_graph(const LocatedJson& file, Diagnostic
   return text;
 }
 
-std::optional<LocatedJson> parse_extended(std::shared_ptr<const SourceText> text, std::vector<std::string>& open,
+std::optional<LocatedJson> parse_extended(const std::shared_ptr<const SourceText>& text, std::vector<std::string>& open,
                                           Diagnostics& diagnostics) {
   auto json = parse_json(text, diagnostics);
   auto* extends = json ? json->find("extends") : nullptr;

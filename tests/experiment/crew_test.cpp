@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "tests/experiment/scored_nodes.h"
@@ -44,7 +45,7 @@ TEST_F(CrewTest, RunsEveryTrial) {
     for (std::size_t t = 0; t < 6; ++t) {
       EXPECT_EQ(results[t].status, Status::finished) << results[t].error;
       ASSERT_EQ(results[t].observations.size(), 6u);  // y and title of three items
-      const double scale = 1 + static_cast<double>(t / 2), offset = t % 2 ? 10 : 0;
+      const double scale = 1 + std::floor(static_cast<double>(t) / 2), offset = t % 2 ? 10 : 0;
       EXPECT_EQ(results[t].observations[3].measure, "y");
       EXPECT_EQ(results[t].observations[3].item, "2");
       EXPECT_EQ(results[t].observations[3].value, 2 * scale + offset);

@@ -56,7 +56,7 @@ struct Corpus {
 Corpus drawn_from(const JointGmm& model, int sequences, double noise) {
   Corpus corpus;
   for (int i = 0; i < sequences; ++i) {
-    const auto seed = static_cast<std::uint64_t>(10 * i + 1);
+    const auto seed = 10 * static_cast<std::uint64_t>(i) + 1;
     const Track audio = track_of(some_sound(60, seed));
     Track visual = SynthesiseJointGmm{}(model, audio);
     visual.values += noise * gaussian(60, 3, seed + 1);

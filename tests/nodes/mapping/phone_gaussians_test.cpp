@@ -58,7 +58,7 @@ struct Corpus {
 Corpus drawn_from(const PhoneGaussians& model, int sequences, double noise) {
   Corpus corpus;
   for (int i = 0; i < sequences; ++i) {
-    const auto seed = static_cast<std::uint64_t>(10 + i);
+    const auto seed = 10 + static_cast<std::uint64_t>(i);
     const Phones phones = some_phones(40, seed);
     corpus.visual.add(std::to_string(i), track_of(trajectory(model, phones) + noise * gaussian(40, 3, seed)));
     corpus.labels.add(std::to_string(i), labels_of(phones));

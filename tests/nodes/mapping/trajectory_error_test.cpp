@@ -13,9 +13,9 @@ StateGaussians some_states(Eigen::Index kinds, double smoothness) {
   return {gaussian(3, 2 * kinds, 1), gaussian(3, 2 * kinds, 2).cwiseAbs2().array() + 0.1, kinds, smoothness};
 }
 
-StatePath some_path(TrajectoryRows rows, Eigen::Index frames, std::uint64_t seed) {
+StatePath some_path(const TrajectoryRows& rows, Eigen::Index frames, std::uint64_t seed) {
   Random random(seed);
-  StatePath path{std::move(rows), {}, gaussian(frames, 1, seed).cwiseAbs2().array() + 0.1, {}};
+  StatePath path{rows, {}, gaussian(frames, 1, seed).cwiseAbs2().array() + 0.1, {}};
   for (Eigen::Index t = 0; t < frames; ++t) path.states.push_back(static_cast<Eigen::Index>(random.below(3)));
   return path;
 }

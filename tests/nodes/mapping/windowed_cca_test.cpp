@@ -30,7 +30,7 @@ Eigen::MatrixXd follow(const Eigen::MatrixXd& audio, double noise, std::uint64_t
 Corpus drawn(int sequences, Eigen::Index frames, double noise) {
   Corpus corpus;
   for (int i = 0; i < sequences; ++i) {
-    const auto seed = static_cast<std::uint64_t>(10 * i + 1);
+    const auto seed = 10 * static_cast<std::uint64_t>(i) + 1;
     const Eigen::MatrixXd audio = gaussian(frames, 4, seed).array() + 2;
     corpus.audio.add(std::to_string(i), track_of(audio));
     corpus.visual.add(std::to_string(i), track_of(follow(audio, noise, seed + 1)));
