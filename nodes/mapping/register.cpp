@@ -1,6 +1,7 @@
 #include "nodes/mapping/register.h"
 
 #include "nodes/mapping/context_gp.h"
+#include "nodes/mapping/context_gp_inspect.h"
 #include "nodes/mapping/coupled_hmm.h"
 #include "nodes/mapping/coupled_hmm_synthesise.h"
 #include "nodes/mapping/dpds.h"
@@ -28,6 +29,7 @@ void register_mapping(Registry& registry) {
   registry.add<AssembleSsgpdm>();
   registry.add<DecodeDpds>();
   registry.add<EstimateOffsets>();
+  registry.add<InspectContextGp>();
   registry.add<PredictContextGp>();
   registry.add<Resegment>();
   registry.add<SynthesiseCoupledHmm>();

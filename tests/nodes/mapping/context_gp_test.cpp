@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "nodes/mapping/context_gp_inspect.h"
 #include "tests/nodes/latent/gaussian.h"
 
 namespace talkgraph {
@@ -241,6 +242,30 @@ TEST(ContextGp, LearnsItsKernel) {
   EXPECT_LT(apart(1, 2), apart(0, 1));
   EXPECT_LT(apart(1, 2), apart(0, 2));
   EXPECT_EQ(corpus.learn(node, 40).map, model.map);
+}
+
+/// As given, any two phones cost `phones`, a deviation of all dimensions half of `sound`.
+TEST(ContextGp, CostsAreThoseGiven) {
+  const auto model = random_corpus().learn({.reach = 1, .width = 1, .sound = 0.6, .phones = 2});
+  const auto [phones, sound, window] = InspectContextGp{}(model);
+  EXPECT_EQ(phones.rows, (std::vector<std::string>{"b - ih", "b - n", "ih - n"}));
+  for (const auto& row : phones.cells) EXPECT_NEAR(row[0], 2, 1e-12);
+  ASSERT_EQ(sound.rows, (std::vector<std::string>{"1", "2", "3"}));
+  for (const auto& row : sound.cells) EXPECT_NEAR(row[0], 0.1, 1e-12);
+  ASSERT_EQ(window.rows, (std::vector<std::string>{"-1", "0", "1"}));
+  EXPECT_NEAR(window.cells[0][0], std::exp(-1) / (1 + 2 * std::exp(-1)), 1e-12);
+  EXPECT_EQ(InspectContextGp{}(ContextGp{}).phones.rows.size(), 0u);
+}
+
+TEST(ContextGp, TellsWhatItHoldsAlike) {
+  const auto model = with_noise_beside(0, 10).learn(
+      {.reach = 1, .width = 1, .noise = 0.1, .kernel_utterances = 6, .inducing = 30}, 40);
+  const auto [phones, sound, window] = InspectContextGp{}(model);
+  ASSERT_EQ(phones.rows.size(), 3u);
+  EXPECT_EQ(phones.rows[0], "b - p");
+  EXPECT_LT(phones.cells[0][0], phones.cells[1][0]);
+  EXPECT_LE(phones.cells[1][0], phones.cells[2][0]);
+  EXPECT_GT(sound.cells[0][0], sound.cells[1][0]);
 }
 
 TEST(ContextGp, KeepsItsKernelWhereNoUtteranceCanBeLeftOut) {
