@@ -120,10 +120,12 @@ TEST(Pipelines, ComparedInAStyleHaveItsSettingsInEveryRow) {
     Diagnostics diagnostics;
     const auto graph = load_graph(test::source("/pipelines/") + std::string(name), registry, diagnostics);
     ASSERT_TRUE(graph) << diagnostics.str();
-    for (const char* row : {"learnt", "learnt_one", "learnt_phones", "learnt_source"}) {
+    for (const char* row : {"learnt", "learnt_one", "learnt_one_source", "learnt_phones", "learnt_source", "learnt_static"}) {
       const Json& state = graph->resolved.at("nodes").at("face/" + std::string(row) + "/sgpdm").at("params");
       EXPECT_EQ(state.at("latent_dimension"), dimension) << row;
       EXPECT_EQ(state.at("dynamics_inverse_width"), 1000) << row;
+      EXPECT_EQ(state.at("likelihood_bias"), true) << row;
+      EXPECT_EQ(state.at("dynamics_bias"), true) << row;
     }
   }
 }
