@@ -222,7 +222,7 @@ CompareMethods::Out CompareMethods::operator()(const Collected<Table>& sequences
 
 void describe(Description<CompareMethods>& d) {
   d.type("statistics.methods")
-      .version(2)
+      .version(3)
       .summary("one table of all methods: means, spread, confidence intervals, significance");
   d.source("Student 1908; Efron 1979; Wilcoxon 1945; Holm 1979; Benjamini & Hochberg 1995");
   d.input("sequences", "an object of named tables of evaluate.sequences, one a method");

@@ -36,7 +36,7 @@ SignedRank signed_rank(const std::vector<double>& differences, std::size_t exact
   if (unequal.empty()) return test;
   std::vector<double> sizes;
   for (const double d : unequal) sizes.push_back(std::abs(d));
-  const Ranks ranks = ranks_of(sizes);
+  const Ranks ranks = ranks_of(sizes, 1e-12 * *std::max_element(sizes.begin(), sizes.end()));
   std::size_t above = 0, below = 0;  // doubled
   for (std::size_t i = 0; i < unequal.size(); ++i) (unequal[i] > 0 ? above : below) += ranks.doubled[i];
   const std::size_t least = std::min(above, below);

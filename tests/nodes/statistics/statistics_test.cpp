@@ -30,6 +30,13 @@ TEST(SignedRank, CountsAllSignsWhereSizesAreEqual) {
   EXPECT_NEAR(test.p, 0.072265625, kTolerance);
 }
 
+// Shares of counts: 1/20, -1/20, 1/20 and 4/20, but for rounding.
+TEST(SignedRank, TakesSizesThatDifferByRoundingForEqual) {
+  const SignedRank test = signed_rank({0.1 - 0.05, 0.25 - 0.3, 0.45 - 0.4, 0.8 - 0.6});
+  EXPECT_EQ(test.statistic, 2);
+  EXPECT_EQ(test.p, 0.5);
+}
+
 TEST(SignedRank, IsNormalWithTiesForMany) {
   std::vector<double> many;
   for (int i = 0; i < 60; ++i) many.push_back(((37 * i) % 101 - 40) / 8.0);
