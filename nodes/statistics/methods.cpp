@@ -144,6 +144,14 @@ std::vector<std::size_t> best_first(const std::vector<double>& means) {
   return order;
 }
 
+/// All methods, the best by the first ranking first; as they are if there is none.
+std::vector<std::size_t> first_ranked(const Collected<Table>& methods, const std::vector<bool>& tested,
+                                      const std::vector<Ranking>& rankings) {
+  if (rankings.empty()) return best_first(std::vector<double>(methods.size()));
+  const auto& [name, sign] = rankings[0];
+  return best_first(ranked_means(scores_by_method(methods, name), tested, sign));
+}
+
 double value_or_nan(const SequenceScores& scores, const std::string& sequence) {
   const auto found = scores.find(sequence);
   return found == scores.end() ? NAN : found->second;
@@ -198,7 +206,7 @@ Table behind_best(const CompareMethods& settings, const Collected<Table>& method
       cells[i].insert(cells[i].end(), {behind[i], p[i], static_cast<double>(won)});
     }
   }
-  for (std::size_t i = 0; i < methods.size(); ++i)
+  for (const std::size_t i : first_ranked(methods, tested, rankings))
     if (tested[i]) out.rows.push_back(methods.key(i)), out.cells.push_back(std::move(cells[i]));
   return out;
 }
@@ -231,7 +239,8 @@ void describe(Description<CompareMethods>& d) {
   d.output("sequences", &CompareMethods::Out::sequences,
            "a row a sequence; of each score x to rank by: x, the best of all methods, and x: METHOD, the best first");
   d.output("best", &CompareMethods::Out::best,
-           "a row a method; of each score x to rank by: x behind the best method's, x behind p, x won: sequences");
+           "a row a method, from the best by the first score to rank by; of each such score x: x behind the best "
+           "method's, x behind p, x won: sequences");
   d.param("scores", &CompareMethods::scores).doc("which, in the order of the columns; empty: all");
   d.param("against", &CompareMethods::against)
       .doc("method that each other is tested against by Wilcoxon's signed-rank test over sequences; empty: none");

@@ -44,7 +44,8 @@ struct CompareMethods {
     ///   x: METHOD   of each method, from the best mean to the worst, then of those of `aside`; NaN if it has none
     ///   there
     Table sequences;
-    /// A row a method, those of `aside` left out. Of each ranked score, the best method being that of the best mean:
+    /// A row a method, those of `aside` left out, the best by the first ranked score first. Of each ranked score, the
+    /// best method being that of the best mean:
     ///   x behind    mean difference to the best method over the sequences that have both, above 0 if this one is
     ///               worse; 0 of the best one
     ///   x behind p  as in `pairs`, corrected over all of them, for the same scores chose the best; NaN of the best one

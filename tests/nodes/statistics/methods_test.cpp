@@ -81,7 +81,7 @@ TEST(CompareMethods, TellsEachSequence) {
 TEST(CompareMethods, TestsTheBestAgainstAllOthers) {
   const auto out = compare({.aside = {"recorded"}, .larger_better = {"acc"}, .smaller_better = {"error"}});
   const Table& t = out.best;
-  EXPECT_EQ(t.rows, (std::vector<std::string>{"mean", "ridge", "SSGPDM"}));
+  EXPECT_EQ(t.rows, (std::vector<std::string>{"SSGPDM", "ridge", "mean"}));
   EXPECT_EQ(t.columns, (std::vector<std::string>{"acc behind", "acc behind p", "acc won", "error behind",
                                                  "error behind p", "error won"}));
   EXPECT_EQ(cell(t, "SSGPDM", "acc behind"), 0);
