@@ -57,17 +57,13 @@ AutomatonReader::Step AutomatonReader::read(const std::string& symbol) {
   return {memory + (memory.empty() ? "" : "-") + symbol, before.probability[static_cast<std::size_t>(s)]};
 }
 
-std::string state_label(const Vlmm& vlmm, const std::string& context) {
-  std::string suffix = context;
-  while (!vlmm.trainable(suffix)) {
-    const auto dash = suffix.find('-');
-    if (dash == std::string::npos) break;
-    suffix.erase(0, dash + 1);
-  }
-  if (vlmm.trainable(suffix)) return suffix;
-  const auto wanted = viseme(suffix);
+namespace {
+
+/// The commonest phone of the same viseme; the symbol itself where there is none.
+std::string commonest_alike(const Vlmm& vlmm, const std::string& symbol) {
+  const auto wanted = viseme(symbol);
   std::int64_t most = 0;
-  std::string alike = suffix;
+  std::string alike = symbol;
   for (const auto& phone : vlmm.alphabet) {
     if (!wanted || viseme(phone) != wanted || vlmm.windows.at(phone) <= most) continue;
     most = vlmm.windows.at(phone);
@@ -76,11 +72,32 @@ std::string state_label(const Vlmm& vlmm, const std::string& context) {
   return alike;
 }
 
+}  // namespace
+
+std::string state_label(const Vlmm& vlmm, const std::string& context) {
+  std::string suffix = context;
+  while (!vlmm.trainable(suffix)) {
+    const auto dash = suffix.find('-');
+    if (dash == std::string::npos) break;
+    suffix.erase(0, dash + 1);
+  }
+  if (vlmm.trainable(suffix)) return suffix;
+  const std::string alike = commonest_alike(vlmm, suffix);
+  return vlmm.trainable(alike) || !vlmm.windows.contains(suffix) ? alike : suffix;
+}
+
 std::string state_label(const Vlmm& vlmm, const std::string& context, std::int64_t most) {
   const std::string label = state_label(vlmm, context);
   if (phone_count(label) <= most) return label;
   const auto phones = label_phones(label);
   return state_label(vlmm, join_phones(phones, phones.size() - static_cast<std::size_t>(most), phones.size()));
+}
+
+std::vector<std::string> state_labels(const Vlmm& vlmm) {
+  std::vector<std::string> labels;
+  for (const auto& [label, count] : vlmm.windows)
+    if (state_label(vlmm, label) == label) labels.push_back(label);
+  return labels;
 }
 
 std::string last_phone(const std::string& label) { return label.substr(label.rfind('-') + 1); }

@@ -47,12 +47,13 @@ class AutomatonReader {
   std::size_t state_ = 0;
 };
 
-/// The label whose state speaks for a context: its longest trainable suffix;
-/// for an unknown phone, the phone of its viseme with most training windows;
-/// if there is none, the phone itself.
+/// The label whose state speaks for a context: its longest trainable suffix; for a phone that is unknown or has too few
+/// training windows, the phone of its viseme with most of them; if there is none, or that has too few too, the phone.
 std::string state_label(const Vlmm& vlmm, const std::string& context);
 /// The same where only the last `most` phones of the context are there; `most` ≥ 1.
 std::string state_label(const Vlmm& vlmm, const std::string& context, std::int64_t most);
+/// The labels that have a state of their own.
+std::vector<std::string> state_labels(const Vlmm& vlmm);
 
 /// The phone that a label ends in.
 std::string last_phone(const std::string& label);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "nodes/context/automaton.h"
+
 namespace talkgraph {
 namespace {
 
@@ -72,7 +74,7 @@ InspectContexts::Out InspectContexts::operator()(const Vlmm& vlmm) const {
   const auto n = occupied.size();
   out.summary.columns = {"memories", "transitions", "labels", "trainable", "thin", "thin share", "median"};
   out.summary.cells = {{static_cast<double>(vlmm.states.size()), static_cast<double>(out.transitions.rows.size()),
-                        static_cast<double>(n), static_cast<double>(vlmm.windows.size()),
+                        static_cast<double>(n), static_cast<double>(state_labels(vlmm).size()),
                         static_cast<double>(rare - occupied.begin()),
                         std::accumulate(occupied.begin(), rare, 0.0) / all,
                         n == 0 ? NAN : (occupied[n / 2] + occupied[(n - 1) / 2]) / 2}};

@@ -65,7 +65,7 @@ Table ContextPerplexity::operator()(const Vlmm& vlmm, const Collected<FrameLabel
           {"perplexity", "entropy", "best_path", "missed", "symbols", "memories", "trainable"},
           {"all"},
           {{std::exp2(entropy), entropy, best / symbols, missed / symbols, symbols,
-            static_cast<double>(vlmm.states.size()), static_cast<double>(vlmm.windows.size())}}};
+            static_cast<double>(vlmm.states.size()), static_cast<double>(state_labels(vlmm).size())}}};
 }
 
 void describe(Description<ContextPerplexity>& d) {

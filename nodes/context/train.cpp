@@ -152,6 +152,7 @@ Vlmm ContextTrain::operator()(const Collected<FrameLabels>& labels) const {
   v.order = order;
   v.repeating = repeating;
   v.visemes = symbols == SymbolKind::visemes;
+  v.min_windows = min_windows;
   const Streams streams = read(labels, v);
   v.alphabet = streams.alphabet;
   PrefixTree tree(order + 1);
@@ -175,7 +176,7 @@ Vlmm ContextTrain::operator()(const Collected<FrameLabels>& labels) const {
 }
 
 void describe(Description<ContextTrain>& d) {
-  d.type("context.train").version(1).stored();
+  d.type("context.train").version(2).stored();
   d.summary("learns phonetic contexts: a variable length Markov model of phones");
   d.source("Thesis §5.2.1, Algorithm 3");
   d.input("labels", "phones at the video rate").output("vlmm", "the contexts");
@@ -187,7 +188,7 @@ void describe(Description<ContextTrain>& d) {
       .doc("least gain in prediction for which a memory is kept");
   d.param("min_windows", &ContextTrain::min_windows)
       .at_least(1)
-      .doc("labels with fewer training windows are mapped to a suffix");
+      .doc("labels with fewer training windows are mapped to a suffix, phones to another of their viseme");
   d.param("symbols", &ContextTrain::symbols).doc("what contexts are of; decode, segment and windows follow the model");
   d.param("repeating", &ContextTrain::repeating).doc("a symbol a frame; false: a symbol a run of equal frames");
 }

@@ -33,13 +33,13 @@ inline constexpr EnumNames<SymbolKind, 2> enum_names<SymbolKind>{
 /// no part of a memory.
 ///
 /// Trainable are the longest suffix with at least `min_windows` windows of each
-/// label met in training, and every phone. Throws std::runtime_error if there
-/// is no frame, a label holds '-', or what is no phone is to be a viseme.
+/// label met in training; a phone with fewer is spoken for by the commonest of its viseme if that has as many. Throws
+/// std::runtime_error if there is no frame, a label holds '-', or what is no phone is to be a viseme.
 struct ContextTrain {
   int order = 6;          ///< N, longest memory, symbols
   double prune = 0;       ///< ε_p
   double keep = 4e-4;     ///< ε_s, nats
-  int min_windows = 5;    ///< rarer labels are mapped to a suffix
+  int min_windows = 5;    ///< rarer labels are mapped to a suffix, rarer phones to another of their viseme
   bool repeating = true;  ///< a symbol a frame; false: a symbol a run of equal frames
   SymbolKind symbols = SymbolKind::phones;
 

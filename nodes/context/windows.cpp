@@ -57,12 +57,11 @@ std::vector<Sequence> pair_up(const Collected<FrameLabels>& labels, const Collec
 /// The states of the model, without windows.
 std::map<std::string, State> states_of(const Vlmm& vlmm, StateKind kind) {
   std::map<std::string, State> states;
-  if (kind == StateKind::contexts)
-    for (const auto& [label, count] : vlmm.windows) states[label];
-  else if (kind == StateKind::phones)
-    for (const auto& phone : vlmm.alphabet) states[phone];
-  else
+  if (kind == StateKind::one)
     states[one_state];
+  else
+    for (const auto& label : state_labels(vlmm))
+      if (kind == StateKind::contexts || phone_count(label) == 1) states[label];
   return states;
 }
 

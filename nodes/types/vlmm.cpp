@@ -154,6 +154,7 @@ void fields(Archive& ar, Vlmm& v) {
   ar("ends", states.ends);
   counts(ar, "occupancy", v.occupancy);
   counts(ar, "windows", v.windows);
+  ar("min_windows", v.min_windows);
   if (!ar.loading()) return;
   v.states = unpacked(states, v.alphabet.size());
   check(v);

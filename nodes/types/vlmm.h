@@ -27,13 +27,17 @@ struct Vlmm {
   std::vector<std::string> alphabet;              ///< sorted
   std::vector<State> states;                      ///< the first is the empty memory
   std::map<std::string, std::int64_t> occupancy;  ///< training frames that carry each label
-  std::map<std::string, std::int64_t> windows;    ///< trainable labels and how often each occurs in training
+  /// How often each label that is worth a state occurs in training, and each symbol of the alphabet.
+  std::map<std::string, std::int64_t> windows;
+  std::int64_t min_windows = 1;  ///< fewest of a label that can be trained
 
-  /// Single symbols of the alphabet always are.
-  bool trainable(const std::string& label) const { return windows.contains(label); }
+  bool trainable(const std::string& label) const {
+    const auto found = windows.find(label);
+    return found != windows.end() && found->second >= min_windows;
+  }
 };
 template <>
-inline constexpr PortType port_type<Vlmm>{"Vlmm", 2};
+inline constexpr PortType port_type<Vlmm>{"Vlmm", 3};
 /// Throws std::runtime_error if what is loaded does not fit together.
 void fields(Archive& ar, Vlmm& v);
 

@@ -211,8 +211,8 @@ TEST(ContextTrain, CountsOccupancyAndWindows) {
   EXPECT_EQ(v.occupancy.at("a-a"), 2);
   EXPECT_EQ(v.occupancy.at("a-b"), 2);
   EXPECT_EQ(v.windows.at("a"), 4);
-  EXPECT_TRUE(v.trainable("b"));
-  EXPECT_FALSE(v.trainable("a-a"));  // two windows, five are wanted
+  EXPECT_EQ(state_label(v, "b"), "b");  // two windows, five are wanted, but no other phone of its viseme was met
+  EXPECT_FALSE(v.trainable("a-a"));
   EXPECT_EQ(state_label(v, "b-a"), "a");
 }
 
@@ -384,6 +384,29 @@ TEST(ContextSegment, AnswersAnUnknownPhoneByItsViseme) {
   EXPECT_EQ(label("breath"), "sil");
   EXPECT_EQ(label("s"), "s");  // no phone of its viseme is known
   EXPECT_EQ(label("7"), "7");
+}
+
+// b has four windows, five are wanted: p, the commonest of its viseme, speaks for it and learns alone.
+TEST(ContextSegment, AnswersAThinPhoneByItsViseme) {
+  const auto thin = [](std::vector<std::string> phones) {
+    const Collected<FrameLabels> labels{{"x", {std::move(phones), Rational(25)}}};
+    const auto frames = static_cast<Eigen::Index>(labels[0].labels.size());
+    const Collected<Track> tracks{{"x", ramp(frames, 0)}};
+    const Vlmm v = ContextTrain{.order = 0}(labels);
+    std::vector<std::string> answers, learnt;
+    for (const auto* phone : {"b", "m", "p"})
+      answers.push_back(ContextSegment{}(v, {{phone}, Rational(25)}).segments.at(0).label);
+    for (const auto kind : {StateKind::contexts, StateKind::phones}) {
+      auto states = ContextWindows{.states = kind}(v, labels, tracks, tracks);
+      while (const auto state = states.next()) learnt.push_back(state->key);
+    }
+    EXPECT_EQ(2 * state_labels(v).size(), learnt.size());
+    return std::pair(answers, learnt);
+  };
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(thin({"b", "p", "b", "p", "b", "p", "p", "p", "b"}), std::pair(Words{"p", "p", "p"}, Words{"p", "p"}));
+  // All are thin: each that was met has a state nevertheless.
+  EXPECT_EQ(thin({"p", "b", "p"}), std::pair(Words{"b", "p", "p"}, Words{"p", "b", "p", "b"}));
 }
 
 // Whatever is said, every frame gets a label, and every segment a state that was trained, or else the phone that only

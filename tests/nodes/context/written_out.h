@@ -85,16 +85,14 @@ class WrittenOutContexts {
   }
 
   Word state(Word word) const {
-    while (word.size() > 1 && !windows.contains(joined(word))) word.erase(word.begin());
-    if (windows.contains(joined(word)) || !viseme(word[0])) return word;
-    std::int64_t most = 0;
-    Word answer = word;
+    const auto enough = [&](const Word& w) { return count(w) > 0 && count(w) >= settings_.min_windows; };
+    while (word.size() > 1 && !(windows.contains(joined(word)) && enough(word))) word.erase(word.begin());
+    if (enough(word) || !viseme(word[0])) return word;
+    Word commonest;
     for (const auto& symbol : alphabet)
-      if (viseme(symbol) == viseme(word[0]) && windows.at(symbol) > most) {
-        most = windows.at(symbol);
-        answer = {symbol};
-      }
-    return answer;
+      if (viseme(symbol) == viseme(word[0]) && (commonest.empty() || count({symbol}) > count(commonest)))
+        commonest = {symbol};
+    return !commonest.empty() && (enough(commonest) || count(word) == 0) ? commonest : word;
   }
 
   /// Algorithm 4: label and first symbol of each segment.
