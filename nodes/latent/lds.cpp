@@ -64,7 +64,7 @@ struct Whitened {
   double log_determinant = 0;   ///< ln|Γ|
 };
 
-/// The frames of a sequence, each in units of the noise of the system that gives it.
+/// The systems of a sequence, and its frames, each in units of the noise of the one that gives it.
 struct WhitenedFrames {
   WhitenedFrames(const LdsRegimes& regimes, const Eigen::MatrixXd& frames) : columns(frames.cols(), frames.rows()) {
     std::map<const Lds*, std::vector<Eigen::Index>> times;
@@ -73,60 +73,109 @@ struct WhitenedFrames {
       const auto white = systems.emplace(model, *model).first;
       columns(Eigen::all, of_model) = white->second.columns(frames(of_model, Eigen::all));
     }
+    for (const Lds* model : regimes) given_by.push_back(&systems.at(model));
   }
   std::map<const Lds*, Whitened> systems;
-  Eigen::MatrixXd columns;  ///< D × T
+  std::vector<const Whitened*> given_by;  ///< T
+  Eigen::MatrixXd columns;                ///< D × T
 };
 
-/// What a filter predicts of a frame's state from those before it.
-struct Prediction {
-  Eigen::VectorXd mean;
-  Root covariance;
+/// What a filter knows of a frame's state whatever the frames are.
+struct FilterStep {
+  Root predicted;              ///< of the covariance given the frames before
+  Eigen::MatrixXd root;        ///< its lower triangle L; of an observed frame
+  Root inner;                  ///< of I + Lᵀ BᵀΓ⁻¹B L; of an observed frame
+  Eigen::MatrixXd covariance;  ///< given this frame too
 };
 
-struct Filtered {
-  LdsPosterior posterior;
-  std::vector<Prediction> predictions;  ///< T
-};
-
-Prediction predict(const Lds& model, const LdsPosterior& p, Eigen::Index t) {
-  if (t == 0) return {model.first_mean, root_of(model.first_covariance, "the first state")};
-  const Eigen::MatrixXd& before = p.covariances.back();
-  return {
-      model.prediction * p.means.row(t - 1).transpose() + model.offset,
-      root_of(model.prediction * before * model.prediction.transpose() + model.prediction_noise, "a predicted state")};
+FilterStep filter_step(const Whitened& white, const FilterStep* before, bool observed) {
+  const Lds& model = white.model;
+  FilterStep step;
+  step.predicted =
+      before ? root_of(model.prediction * before->covariance * model.prediction.transpose() + model.prediction_noise,
+                       "a predicted state")
+             : root_of(model.first_covariance, "the first state");
+  if (!observed) {
+    step.covariance = step.predicted.reconstructedMatrix();
+    return step;
+  }
+  step.root = step.predicted.matrixL();
+  Eigen::MatrixXd inner = step.root.transpose() * white.precision * step.root;
+  inner.diagonal().array() += 1;
+  step.inner = root_of(inner, "an observed state");
+  const Eigen::MatrixXd half = step.inner.matrixL().solve(step.root.transpose());
+  step.covariance = half.transpose() * half;
+  return step;
 }
 
-Filtered filter(const LdsRegimes& regimes, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {
-  const WhitenedFrames whitened(regimes, frames);
-  const double constant = static_cast<double>(frames.cols()) * std::log(2 * std::numbers::pi);
-  Filtered f;
-  f.posterior.means.resize(frames.rows(), regimes.front()->states());
-  for (Eigen::Index t = 0; t < frames.rows(); ++t) {
-    const Lds& model = *regimes[static_cast<std::size_t>(t)];
-    f.predictions.push_back(predict(model, f.posterior, t));
-    const Prediction& predicted = f.predictions.back();
-    if (std::binary_search(lost.begin(), lost.end(), t)) {
-      f.posterior.means.row(t) = predicted.mean.transpose();
-      f.posterior.covariances.push_back(predicted.covariance.reconstructedMatrix());
-      continue;
-    }
-    const Whitened& white = whitened.systems.at(&model);
-    const Eigen::MatrixXd l = predicted.covariance.matrixL();
-    Eigen::MatrixXd inner = l.transpose() * white.precision * l;
-    inner.diagonal().array() += 1;
-    const Root root = root_of(inner, "an observed state");
-    Eigen::VectorXd error = whitened.columns.col(t) - white.observation * predicted.mean;
-    const Eigen::VectorXd step = root.solve(l.transpose() * (white.observation.transpose() * error));
-    f.posterior.means.row(t) = (predicted.mean + l * step).transpose();
-    const Eigen::MatrixXd half = root.matrixL().solve(l.transpose());
-    f.posterior.covariances.push_back(half.transpose() * half);
-    error -= white.observation * (l * step);
-    f.posterior.log_likelihood -=
-        0.5 * (white.log_determinant + constant + 2 * root.matrixLLT().diagonal().array().log().sum() +
-               error.squaredNorm() + step.squaredNorm());
+std::vector<FilterStep> filter_steps(const std::vector<const Whitened*>& given_by,
+                                     const std::vector<std::int64_t>& lost) {
+  std::vector<FilterStep> steps;
+  for (std::size_t t = 0; t < given_by.size(); ++t)
+    steps.push_back(filter_step(*given_by[t], t ? &steps.back() : nullptr,
+                                !std::binary_search(lost.begin(), lost.end(), static_cast<std::int64_t>(t))));
+  return steps;
+}
+
+struct Filtered {
+  Eigen::MatrixXd means, predicted;  ///< T × d: of the states, given frames up to theirs, and up to the one before
+  double log_likelihood = 0;
+};
+
+Filtered filtered(const WhitenedFrames& frames, const std::vector<FilterStep>& steps) {
+  const double constant = static_cast<double>(frames.columns.rows()) * std::log(2 * std::numbers::pi);
+  const Eigen::Index d = frames.given_by.front()->model.states();
+  Filtered f{Eigen::MatrixXd(frames.columns.cols(), d), Eigen::MatrixXd(frames.columns.cols(), d)};
+  for (Eigen::Index t = 0; t < frames.columns.cols(); ++t) {
+    const Whitened& white = *frames.given_by[static_cast<std::size_t>(t)];
+    const FilterStep& step = steps[static_cast<std::size_t>(t)];
+    const Eigen::VectorXd predicted =
+        t == 0 ? white.model.first_mean
+               : Eigen::VectorXd(white.model.prediction * f.means.row(t - 1).transpose() + white.model.offset);
+    f.predicted.row(t) = f.means.row(t) = predicted.transpose();
+    if (step.root.size() == 0) continue;
+    Eigen::VectorXd error = frames.columns.col(t) - white.observation * predicted;
+    const Eigen::VectorXd correction =
+        step.inner.solve(step.root.transpose() * (white.observation.transpose() * error));
+    f.means.row(t) = (predicted + step.root * correction).transpose();
+    error -= white.observation * (step.root * correction);
+    f.log_likelihood -=
+        0.5 * (white.log_determinant + constant + 2 * step.inner.matrixLLT().diagonal().array().log().sum() +
+               error.squaredNorm() + correction.squaredNorm());
   }
   return f;
+}
+
+/// What a smoother knows whatever the frames are; one of T steps is for sequences of T frames.
+struct SmootherSteps {
+  std::vector<Eigen::MatrixXd> gains;        ///< T − 1: of x_t's mean by what x_{t+1}'s prediction missed
+  std::vector<Eigen::MatrixXd> covariances;  ///< T
+  std::vector<Eigen::MatrixXd> lagged;       ///< T − 1
+};
+
+SmootherSteps smoother_steps(const std::vector<const Whitened*>& given_by, const std::vector<FilterStep>& steps) {
+  const std::size_t last = given_by.size() - 1;
+  SmootherSteps s{std::vector<Eigen::MatrixXd>(last), {}, std::vector<Eigen::MatrixXd>(last)};
+  for (std::size_t t = 0; t <= last; ++t) s.covariances.push_back(steps[t].covariance);
+  for (std::size_t t = last; t-- > 0;) {
+    const Lds& model = given_by[t + 1]->model;
+    Eigen::MatrixXd& covariance = s.covariances[t];
+    const Eigen::MatrixXd gain = steps[t + 1].predicted.solve(model.prediction * covariance).transpose();
+    const Eigen::MatrixXd& after = s.covariances[t + 1];
+    s.lagged[t] = after * gain.transpose();
+    const Eigen::MatrixXd kept = Eigen::MatrixXd::Identity(gain.rows(), gain.rows()) - gain * model.prediction;
+    covariance = kept * covariance * kept.transpose() + gain * (model.prediction_noise + after) * gain.transpose();
+    s.gains[t] = gain;
+  }
+  return s;
+}
+
+LdsPosterior smoothed(Filtered f, const SmootherSteps& steps) {
+  for (Eigen::Index t = f.means.rows() - 1; t-- > 0;)
+    f.means.row(t) += (steps.gains[static_cast<std::size_t>(t)] *
+                       (f.means.row(t + 1).transpose() - f.predicted.row(t + 1).transpose()))
+                          .transpose();
+  return {std::move(f.means), steps.covariances, steps.lagged, f.log_likelihood};
 }
 
 /// Each frame beside those before it, the first standing for what is before a sequence.
@@ -168,10 +217,11 @@ Lds start_lds(const Sequences& data, const TrainLds& options, const LdsConstrain
 
 double expect(const Lds& model, const Sequences& data, LdsExpectations& e) {
   e = LdsExpectations(model.states());
+  LdsSmoother smooth(model);
   double log_likelihood = 0;
   Eigen::Index from = 0;
   for (const Eigen::Index length : data.lengths) {
-    const LdsPosterior p = kalman_smoother(model, data.frames.middleRows(from, length));
+    const LdsPosterior p = smooth(data.frames.middleRows(from, length));
     e.add(p);
     log_likelihood += p.log_likelihood;
     from += length;
@@ -181,29 +231,40 @@ double expect(const Lds& model, const Sequences& data, LdsExpectations& e) {
 
 }  // namespace
 
+struct LdsSmoother::Steps {
+  std::vector<FilterStep> filter;
+  std::map<std::size_t, SmootherSteps> smoother;  ///< by the frames of a sequence
+};
+
+LdsSmoother::LdsSmoother(const Lds& model) : model_(model), steps_(std::make_unique<Steps>()) {}
+LdsSmoother::~LdsSmoother() = default;
+
+LdsPosterior LdsSmoother::operator()(const Eigen::MatrixXd& frames) {
+  const WhitenedFrames whitened(LdsRegimes(static_cast<std::size_t>(frames.rows()), &model_), frames);
+  const auto& given_by = whitened.given_by;
+  auto& filter = steps_->filter;
+  while (filter.size() < given_by.size())
+    filter.push_back(filter_step(*given_by[0], filter.empty() ? nullptr : &filter.back(), true));
+  auto& of_length = steps_->smoother[given_by.size()];
+  if (of_length.covariances.empty()) of_length = smoother_steps(given_by, filter);
+  return smoothed(filtered(whitened, filter), of_length);
+}
+
 LdsPosterior kalman_filter(const LdsRegimes& regimes, const Eigen::MatrixXd& frames,
                            const std::vector<std::int64_t>& lost) {
-  return filter(regimes, frames, lost).posterior;
+  const WhitenedFrames whitened(regimes, frames);
+  const auto steps = filter_steps(whitened.given_by, lost);
+  Filtered f = filtered(whitened, steps);
+  LdsPosterior p{std::move(f.means), {}, {}, f.log_likelihood};
+  for (const auto& step : steps) p.covariances.push_back(step.covariance);
+  return p;
 }
 
 LdsPosterior kalman_smoother(const LdsRegimes& regimes, const Eigen::MatrixXd& frames,
                              const std::vector<std::int64_t>& lost) {
-  Filtered f = filter(regimes, frames, lost);
-  LdsPosterior& p = f.posterior;
-  p.lagged.resize(p.covariances.size() - 1);
-  for (std::size_t t = p.lagged.size(); t-- > 0;) {
-    const auto row = static_cast<Eigen::Index>(t);
-    const Lds& model = *regimes[t + 1];
-    const Prediction& next = f.predictions[t + 1];
-    Eigen::MatrixXd& covariance = p.covariances[t];
-    const Eigen::MatrixXd gain = next.covariance.solve(model.prediction * covariance).transpose();
-    p.means.row(row) += (gain * (p.means.row(row + 1).transpose() - next.mean)).transpose();
-    const Eigen::MatrixXd& after = p.covariances[t + 1];
-    p.lagged[t] = after * gain.transpose();
-    const Eigen::MatrixXd kept = Eigen::MatrixXd::Identity(gain.rows(), gain.rows()) - gain * model.prediction;
-    covariance = kept * covariance * kept.transpose() + gain * (model.prediction_noise + after) * gain.transpose();
-  }
-  return std::move(p);
+  const WhitenedFrames whitened(regimes, frames);
+  const auto steps = filter_steps(whitened.given_by, lost);
+  return smoothed(filtered(whitened, steps), smoother_steps(whitened.given_by, steps));
 }
 
 LdsPosterior kalman_filter(const Lds& model, const Eigen::MatrixXd& frames, const std::vector<std::int64_t>& lost) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 
 #include "graph/context.h"
 #include "graph/description.h"
@@ -31,6 +32,20 @@ LdsPosterior kalman_filter(const LdsRegimes& regimes, const Eigen::MatrixXd& fra
                            const std::vector<std::int64_t>& lost = {});
 LdsPosterior kalman_smoother(const LdsRegimes& regimes, const Eigen::MatrixXd& frames,
                              const std::vector<std::int64_t>& lost = {});
+
+/// The same for many sequences of one system, which must outlive it, without lost frames: gains and covariances do not
+/// depend on the frames, and are computed once for sequences of equal length, the filter's for all.
+class LdsSmoother {
+ public:
+  explicit LdsSmoother(const Lds& model);
+  ~LdsSmoother();
+  LdsPosterior operator()(const Eigen::MatrixXd& frames);
+
+ private:
+  struct Steps;
+  const Lds& model_;
+  std::unique_ptr<Steps> steps_;
+};
 
 /// The system of `dims` observed dimensions alone, from number `from` on.
 Lds observed_part(const Lds& model, Eigen::Index from, Eigen::Index dims);

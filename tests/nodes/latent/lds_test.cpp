@@ -156,6 +156,23 @@ TEST(Lds, AlsoWhereTheSystemSwitches) {
   expect_dense({&other, &one, &other, &other, &one, &one}, frames, {1, 4});
 }
 
+TEST(Lds, SmoothsManySequencesAsEachOne) {
+  const Lds model = truth();
+  const std::vector<Eigen::Index> lengths = {3, 8, 1, 8, 5, 3};
+  const Sequences data = sample(model, {3, 8, 1, 8, 5, 3}, 6);
+  LdsSmoother smooth(model);
+  Eigen::Index from = 0;
+  for (const auto length : lengths) {
+    const Eigen::MatrixXd frames = data.frames.middleRows(from, length);
+    const LdsPosterior alone = kalman_smoother(model, frames), beside = smooth(frames);
+    EXPECT_EQ(beside.means, alone.means);
+    EXPECT_EQ(beside.covariances, alone.covariances);
+    EXPECT_EQ(beside.lagged, alone.lagged);
+    EXPECT_EQ(beside.log_likelihood, alone.log_likelihood);
+    from += length;
+  }
+}
+
 TEST(Lds, OfAPartOfTheObservedDimensionsSeesTheSameStates) {
   Lds model = truth();
   model.observation_noise.topRightCorner(3, 1).setZero();
