@@ -47,32 +47,4 @@ struct TrainContextGp {
 };
 void describe(Description<TrainContextGp>& d);
 
-/// Mean and variance of the visual parameters at every frame, that of the noise included. Phones that training has not
-/// met resemble none. Throws std::runtime_error on audio of another dimension or with values that are not finite.
-struct PredictContextGp {
-  struct Prediction {
-    Track visual;
-    Track variance;
-  };
-  Prediction operator()(const ContextGp& model, const Track& audio, const PhoneTrack& phones) const;
-};
-void describe(Description<PredictContextGp>& d);
-
-/// What all other utterances say of one, at those of its frames that are learnt.
-struct HeldOut {
-  std::string key;
-  std::vector<Eigen::Index> frames;
-  Eigen::MatrixXd predicted;  ///< a row a frame
-};
-
-/// Of every utterance, in closed form: ẑ_u = z_u − ((K + σ²I)⁻¹_uu)⁻¹ ((K + σ²I)⁻¹ (Z − mean))_u, which takes one
-/// factorisation and as long again. The kernel is as the node gives it. Errors of TrainContextGp; std::runtime_error if
-/// there is one utterance only.
-std::vector<HeldOut> leave_one_out(const TrainContextGp& node, const Collected<Track>& audio,
-                                   const Collected<PhoneTrack>& phones, const Collected<Track>& visual,
-                                   Context& context);
-
-/// How much of each frame each of these phones takes (T × phones): 0 to 1.
-Eigen::MatrixXd phone_shares(const PhoneTrack& phones, const std::vector<std::string>& inventory, const Track& like);
-
 }  // namespace talkgraph

@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "nodes/mapping/leave_one_out.h"
 #include "nodes/sync/shift.h"
 
 namespace talkgraph {

@@ -2,6 +2,7 @@
 
 #include "nodes/mapping/context_gp.h"
 #include "nodes/mapping/context_gp_inspect.h"
+#include "nodes/mapping/context_gp_predict.h"
 #include "nodes/mapping/coupled_hmm.h"
 #include "nodes/mapping/coupled_hmm_synthesise.h"
 #include "nodes/mapping/dpds.h"

@@ -7,78 +7,21 @@
 #include <cmath>
 #include <limits>
 
+#include "nodes/mapping/context_frames.h"
 #include "nodes/mapping/context_gp_inspect.h"
-#include "tests/nodes/latent/gaussian.h"
+#include "nodes/mapping/context_gp_predict.h"
+#include "tests/nodes/mapping/context_corpus.h"
 
 namespace talkgraph {
 namespace {
 
+using testing::ContextCorpus;
 using testing::gaussian;
-
-Track track(Eigen::MatrixXd values) {
-  Track t;
-  t.values = std::move(values);
-  t.start = 0.02;
-  return t;
-}
-
-/// Phones of so many frames each.
-PhoneTrack said(const std::vector<std::pair<std::string, int>>& phones) {
-  PhoneTrack out;
-  double at = 0;
-  for (const auto& [label, frames] : phones) {
-    out.phones.push_back({label, at, at + frames / 25.0});
-    at += frames / 25.0;
-  }
-  return out;
-}
-
-struct Corpus {
-  Collected<Track> audio, visual;
-  Collected<PhoneTrack> phones;
-  void add(const std::string& key, Track a, PhoneTrack p, Track v) {
-    audio.add(key, std::move(a));
-    phones.add(key, std::move(p));
-    visual.add(key, std::move(v));
-  }
-  ContextGp learn(TrainContextGp node, int kernel_steps = 0) const {
-    node.kernel_steps = kernel_steps;
-    Context context;
-    Random random(1);
-    return node(audio, phones, visual, random, context);
-  }
-};
-
-Corpus random_corpus() {
-  Corpus corpus;
-  corpus.add("a", track(gaussian(12, 3, 1)), said({{"b", 3}, {"ih", 5}, {"n", 4}}), track(gaussian(12, 2, 2)));
-  corpus.add("b", track(gaussian(9, 3, 3)), said({{"n", 4}, {"b", 5}}), track(gaussian(9, 2, 4)));
-  return corpus;
-}
-
-/// Every frame with all it is compared by, weighted: the textbook's way to the same kernel.
-Eigen::MatrixXd stacked(const TrainContextGp& node, const Eigen::MatrixXd& z_scored, const Eigen::MatrixXd& shares) {
-  const Eigen::Index frames = z_scored.rows(), d = z_scored.cols(), p = shares.cols();
-  Eigen::VectorXd w(2 * node.reach + 1);
-  for (int l = -node.reach; l <= node.reach; ++l) w[l + node.reach] = std::exp(-l * l / (node.width * node.width));
-  w /= w.sum();
-  Eigen::MatrixXd out(frames, w.size() * (d + p));
-  for (Eigen::Index t = 0; t < frames; ++t)
-    for (int l = -node.reach; l <= node.reach; ++l) {
-      const auto from = std::clamp<Eigen::Index>(t + l, 0, frames - 1);
-      const double root = std::sqrt(w[l + node.reach]);
-      out.block(t, (l + node.reach) * (d + p), 1, d) =
-          root * std::sqrt(node.sound / static_cast<double>(d)) * z_scored.row(from);
-      out.block(t, (l + node.reach) * (d + p) + d, 1, p) = root * std::sqrt(node.phones) * shares.row(from);
-    }
-  return out;
-}
-
-Eigen::MatrixXd rbf(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return Eigen::MatrixXd::NullaryExpr(a.rows(), b.rows(), [&](Eigen::Index i, Eigen::Index j) {
-    return std::exp(-0.5 * (a.row(i) - b.row(j)).squaredNorm());
-  });
-}
+using testing::random_corpus;
+using testing::rbf;
+using testing::said;
+using testing::stacked;
+using testing::track;
 
 TEST(ContextGp, IsTheTextbooksProcess) {
   const auto corpus = random_corpus();
@@ -145,7 +88,7 @@ TEST(ContextGp, IsAsFarOffAsItSays) {
     }
     return std::pair{audio, visual};
   };
-  Corpus corpus;
+  ContextCorpus corpus;
   for (int clip = 0; clip < 6; ++clip)
     corpus.add(std::to_string(clip), sine(clip).first, said({{"b", 100}}), sine(clip).second);
   const auto model = corpus.learn({.reach = 0, .sound = 20, .noise = 0.5});
@@ -156,48 +99,9 @@ TEST(ContextGp, IsAsFarOffAsItSays) {
   EXPECT_LT(off, 1.5);
 }
 
-TEST(ContextGp, LeavesOneOutAsIfItWereNotThere) {
-  auto corpus = random_corpus();
-  corpus.add("c", track(gaussian(7, 3, 6)), said({{"ih", 7}}), track(gaussian(7, 2, 9)));
-  const TrainContextGp node{.reach = 2, .noise = 0.3};
-  Context context;
-  const auto held = leave_one_out(node, corpus.audio, corpus.phones, corpus.visual, context);
-  ASSERT_EQ(held.size(), 3u);
-  // The other two by the textbook, with the scaling, the phones and the mean of all three.
-  const auto model = corpus.learn(node);
-  const auto described = [&](std::size_t u) {
-    const Eigen::MatrixXd a = corpus.audio[u].values;
-    return stacked(node, ((a.rowwise() - model.audio_mean).array().rowwise() * model.audio_scale.array()).matrix(),
-                   phone_shares(corpus.phones[u], model.phones, corpus.audio[u]));
-  };
-  const Eigen::MatrixXd a = described(0), b = described(1), c = described(2);
-  Eigen::MatrixXd x(19, a.cols()), z(19, 2);
-  x << a, c;
-  z << corpus.visual[0].values, corpus.visual[2].values;
-  const Eigen::MatrixXd expected =
-      (rbf(b, x) * (rbf(x, x) + 0.3 * Eigen::MatrixXd::Identity(19, 19)).fullPivLu().solve(z.rowwise() - model.mean))
-          .rowwise() +
-      model.mean;
-  EXPECT_EQ(held[1].key, "b");
-  ASSERT_EQ(held[1].predicted.rows(), 9);
-  EXPECT_LT((held[1].predicted - expected).norm(), 1e-9 * expected.norm());
-
-  Corpus alone;
-  alone.add("a", corpus.audio[0], corpus.phones[0], corpus.visual[0]);
-  EXPECT_THROW(leave_one_out(node, alone.audio, alone.phones, alone.visual, context), std::runtime_error);
-}
-
-TEST(ContextGp, PhoneSharesByHand) {
-  PhoneTrack phones{{{"b", 0.0, 0.05}, {"ih", 0.05, 0.12}, {"zh", 0.12, 0.2}}};
-  const Eigen::MatrixXd shares = phone_shares(phones, {"b", "ih"}, track(Eigen::MatrixXd::Zero(4, 1)));
-  Eigen::MatrixXd expected(4, 2);
-  expected << 1, 0, 0.25, 0.75, 0, 1, 0, 0;
-  EXPECT_LT((shares - expected).norm(), 1e-12);
-}
-
 /// The sound tells nothing; the lips round for the vowel before it is heard.
 TEST(ContextGp, KnowsTheNextPhone) {
-  Corpus corpus;
+  ContextCorpus corpus;
   const Track silent_sound = track(Eigen::MatrixXd::Zero(8, 1));
   for (int i = 0; i < 6; ++i) {
     const bool round = i % 2;
@@ -212,8 +116,8 @@ TEST(ContextGp, KnowsTheNextPhone) {
 }
 
 /// Of two streams of sound one moves the lips, of three phones two look alike.
-Corpus with_noise_beside(int from, int to) {
-  Corpus corpus;
+ContextCorpus with_noise_beside(int from, int to) {
+  ContextCorpus corpus;
   for (int i = from; i < to; ++i) {
     const Eigen::MatrixXd sound = gaussian(24, 2, 100 + i);
     const bool b = i % 2;
@@ -269,7 +173,7 @@ TEST(ContextGp, TellsWhatItHoldsAlike) {
 }
 
 TEST(ContextGp, KeepsItsKernelWhereNoUtteranceCanBeLeftOut) {
-  Corpus corpus = random_corpus();
+  ContextCorpus corpus = random_corpus();
   corpus.phones = {};
   corpus.phones.add("a", said({{"b", 12}}));
   corpus.phones.add("b", said({{"sil", 9}}));
@@ -283,20 +187,6 @@ TEST(ContextGp, KeepsItsKernelWhereNoUtteranceCanBeLeftOut) {
   EXPECT_THAT(warnings[0], ::testing::HasSubstr("fewer than two utterances with speech"));
 }
 
-TEST(ContextGp, PausesAreThinnedAndLostFramesLeftOut) {
-  Corpus corpus;
-  auto visual = track(gaussian(20, 2, 7));
-  visual.lost = {1};
-  corpus.add("a", track(gaussian(20, 3, 8)), said({{"b", 4}, {"sil", 16}}), visual);
-  const auto model = corpus.learn({.margin = 2, .pauses = 5});
-  std::vector<int> learnt;
-  for (int t = 0; t < 20; ++t)
-    if (!model.weights.row(t).isZero()) learnt.push_back(t);
-  EXPECT_EQ(learnt, (std::vector<int>{0, 2, 3, 4, 5, 10, 15}));
-  const auto few = corpus.learn({.margin = 2, .pauses = 1, .max_frames = 5});
-  EXPECT_EQ((few.weights.rowwise().squaredNorm().array() > 0).count(), 5);
-}
-
 TEST(ContextGp, AnswersToPhonesAndSoundItHasNotMet) {
   const auto model = random_corpus().learn({});
   const auto predicted = PredictContextGp{}(model, track(Eigen::MatrixXd::Constant(5, 3, 1e6)), said({{"zh", 5}}));
@@ -306,8 +196,8 @@ TEST(ContextGp, AnswersToPhonesAndSoundItHasNotMet) {
 }
 
 TEST(ContextGp, SaysWhatIsWrong) {
-  EXPECT_THROW(Corpus{}.learn({}), std::runtime_error);
-  Corpus unpaired = random_corpus();
+  EXPECT_THROW(ContextCorpus{}.learn({}), std::runtime_error);
+  ContextCorpus unpaired = random_corpus();
   unpaired.phones = {};
   EXPECT_THROW(unpaired.learn({}), std::runtime_error);
 
@@ -322,11 +212,13 @@ TEST(ContextGp, SaysWhatIsWrong) {
   broken(1, 1) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(with(track(broken), track(gaussian(4, 2, 1))).learn({}), std::runtime_error);
 
-  Corpus lost;
+  ContextCorpus lost;
   auto visual = track(gaussian(3, 2, 1));
   visual.lost = {0, 1, 2};
   lost.add("a", track(gaussian(3, 3, 1)), said({{"b", 3}}), visual);
   EXPECT_THROW(lost.learn({}), std::runtime_error);
+
+  EXPECT_THROW(random_corpus().learn({.noise = -1}), std::runtime_error);
 
   const auto model = random_corpus().learn({});
   EXPECT_THROW(PredictContextGp{}(model, track(gaussian(4, 2, 1)), said({{"b", 4}})), std::runtime_error);
