@@ -1,8 +1,8 @@
 #include "nodes/mapping/context_covariance.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <stdexcept>
+
+#include "nodes/mapping/context_kernel.h"
 
 namespace talkgraph {
 namespace {
@@ -70,9 +70,7 @@ Eigen::MatrixXd kernel_with_training(const ContextGp& model, const Eigen::Matrix
 
 Eigen::MatrixXd covariance_factor(const ContextGp& model, const std::vector<Eigen::Index>& rows, Context& context) {
   Eigen::MatrixXd factor = covariance(model, rows, context);
-  factor.diagonal().array() += model.noise;
-  if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(factor).info() != Eigen::Success)
-    throw std::runtime_error("the covariance of the training frames cannot be factorised: raise noise");
+  factorise(factor, model.noise);
   return factor;
 }
 

@@ -24,7 +24,7 @@ Eigen::MatrixXd kernel_with_training(const ContextGp& model, const Eigen::Matrix
                                      const std::vector<Eigen::Index>& some);
 
 /// Cholesky's factor, in the lower triangle, of the covariance of training frames with its noise. Throws
-/// std::runtime_error.
+/// FactorisationError.
 Eigen::MatrixXd covariance_factor(const ContextGp& model, const std::vector<Eigen::Index>& rows, Context& context);
 
 }  // namespace talkgraph

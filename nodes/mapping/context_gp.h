@@ -28,7 +28,7 @@ namespace talkgraph {
 ///
 /// Utterances are paired by key; one that lacks sound, phones or face is left out. Throws std::runtime_error if none is
 /// left or nothing was measured, on values that are not finite, and where dimensions differ or lengths do by more than
-/// two frames.
+/// two frames; FactorisationError where the noise is too small.
 struct TrainContextGp {
   int reach = 8;
   double width = 4;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "nodes/latent/cholesky.h"
 
 namespace talkgraph {
 namespace {
@@ -49,12 +49,8 @@ Process process_of(const Utterances& utterances, const ContextKernel& k) {
   p.kernel.colwise() -= squares;
   p.kernel.rowwise() -= squares.transpose();
   p.kernel = p.kernel.cwiseMin(0).array().exp();
-  p.inverse = p.kernel;
-  p.inverse.diagonal().array() += k.noise;
-  const Eigen::LLT<Eigen::MatrixXd> factor(p.inverse);
-  if (factor.info() != Eigen::Success)
-    throw std::runtime_error("the covariance of the training frames cannot be factorised: raise noise");
-  p.inverse = factor.solve(Eigen::MatrixXd::Identity(p.inverse.rows(), p.inverse.rows()));
+  Eigen::MatrixXd covariance = p.kernel;
+  p.inverse = factorise(covariance, k.noise).solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
   return p;
 }
 
@@ -105,6 +101,14 @@ Utterances drawn(const std::vector<KernelExample>& utterances, std::size_t most,
 }
 
 }  // namespace
+
+Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorise(Eigen::MatrixXd& covariance, double noise) {
+  covariance.diagonal().array() += noise;
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(covariance);
+  if (factor.info() != Eigen::Success)
+    throw FactorisationError("the covariance of the training frames cannot be factorised: raise noise");
+  return factor;
+}
 
 LeftOutError left_out_error(const Utterances& utterances, const ContextKernel& kernel) {
   const Process p = process_of(utterances, kernel);

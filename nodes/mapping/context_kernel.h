@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Cholesky>
 #include <vector>
 
 #include "graph/context.h"
@@ -16,6 +16,10 @@ struct ContextKernel {
   double noise = 1;
 };
 
+/// Cholesky's factorisation, in place, of a covariance of training frames, to whose diagonal the noise is added. Only
+/// the lower triangle is read. Throws FactorisationError.
+Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorise(Eigen::MatrixXd& covariance, double noise);
+
 /// An utterance from which a kernel is learnt; N frames of which D parameters are known.
 struct KernelExample {
   std::vector<Eigen::MatrixXd> around;  ///< for each place l in the window x of all frames, N × C
@@ -30,7 +34,7 @@ struct LeftOutError {
   double value = 0;
   ContextKernel gradient;
 };
-/// Throws std::runtime_error where the covariance cannot be factorised. At least one frame must count.
+/// Throws FactorisationError. At least one frame must count.
 LeftOutError left_out_error(const std::vector<const KernelExample*>& utterances, const ContextKernel& kernel);
 
 /// Steps of Adam (Kingma & Ba 2015) down that error of some utterances, drawn anew for each step.

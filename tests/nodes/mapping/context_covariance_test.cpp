@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "nodes/latent/cholesky.h"
 #include "nodes/mapping/context_frames.h"
 #include "tests/nodes/mapping/context_corpus.h"
 
@@ -69,7 +70,7 @@ TEST(ContextCovariance, NeedsNoise) {
   auto model = learnt();
   model.noise = -1;
   Context context;
-  EXPECT_THROW(covariance_factor(model, rows, context), std::runtime_error);
+  EXPECT_THROW(covariance_factor(model, rows, context), FactorisationError);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "nodes/latent/cholesky.h"
 #include "nodes/mapping/context_frames.h"
 #include "nodes/mapping/context_gp_inspect.h"
 #include "nodes/mapping/context_gp_predict.h"
@@ -218,7 +219,7 @@ TEST(ContextGp, SaysWhatIsWrong) {
   lost.add("a", track(gaussian(3, 3, 1)), said({{"b", 3}}), visual);
   EXPECT_THROW(lost.learn({}), std::runtime_error);
 
-  EXPECT_THROW(random_corpus().learn({.noise = -1}), std::runtime_error);
+  EXPECT_THROW(random_corpus().learn({.noise = -1}), FactorisationError);
 
   const auto model = random_corpus().learn({});
   EXPECT_THROW(PredictContextGp{}(model, track(gaussian(4, 2, 1)), said({{"b", 4}})), std::runtime_error);

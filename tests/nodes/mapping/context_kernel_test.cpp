@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "nodes/latent/cholesky.h"
 #include "tests/nodes/latent/gaussian.h"
 
 namespace talkgraph {
@@ -109,7 +110,7 @@ TEST(LeftOutError, SaysWhereNothingCanBeFactorised) {
   all[1] = all[0];
   auto k = kernel();
   k.noise = -1;
-  EXPECT_THROW(error_of(all, k), std::runtime_error);
+  EXPECT_THROW(error_of(all, k), FactorisationError);
 }
 
 /// Only the first dimension at the middle place says anything, of twelve; the third and fourth belong to another group.
