@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -15,47 +17,43 @@
 namespace talkgraph {
 namespace {
 
-double p_of(const std::vector<double>& differences) { return differences.empty() ? NAN : signed_rank(differences).p; }
-
-void require_method(const Collected<Table>& methods, const std::string& name) {
-  if (!methods.find(name))
-    throw std::runtime_error(
-        fmt::format("there is no method \"{}\"; there are {}", name, fmt::join(methods.keys(), ", ")));
-}
-
-Table described(const CompareMethods& settings, const Collected<Table>& methods, const std::vector<bool>& tested,
-                const std::vector<std::string>& names, Random& random) {
-  Table out{settings.title, "method", {}, methods.keys(), std::vector<std::vector<double>>(methods.size())};
-  for (const auto& name : names) {
-    for (const char* what : {"", " std", " low", " high"}) out.columns.push_back(name + what);
-    std::vector<double> p(methods.size(), NAN);
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-      const SequenceScores scores = sequence_scores(methods[i], name);
-      const auto values = values_of(scores);
-      const auto [low, high] = settings.interval == IntervalKind::student
-                                   ? student_interval(values, settings.confidence)
-                                   : bootstrap_interval(values, settings.confidence, settings.samples, random);
-      out.cells[i].insert(out.cells[i].end(), {mean_of(values), deviation_of(values), low, high});
-      if (!settings.against.empty() && tested[i] && methods.key(i) != settings.against)
-        p[i] = p_of(paired_differences(scores, sequence_scores(*methods.find(settings.against), name)));
-    }
-    if (settings.against.empty()) continue;
-    out.columns.push_back(name + " p");
-    p = corrected(p, settings.correction);
-    for (std::size_t i = 0; i < methods.size(); ++i) out.cells[i].push_back(p[i]);
-  }
-  out.columns.emplace_back("sequences");
-  for (std::size_t i = 0; i < methods.size(); ++i) out.cells[i].push_back(static_cast<double>(methods[i].rows.size()));
-  return out;
-}
-
-/// Tests of pairs of methods by one score.
-struct PairTests {
-  std::vector<std::vector<double>> differences;
-  std::vector<double> p;  ///< corrected over the pairs
+/// A score that methods are ranked by.
+struct Ranking {
+  std::string score;
+  double sign;  ///< 1 if the larger is better, -1 if the smaller
 };
 
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+/// One score of all methods, and their pairs tested by it.
+struct MethodScores {
+  std::vector<SequenceScores> by_method;
+  std::vector<double> differences, p, effects;  ///< of each pair: mean; of its test, p corrected over the pairs
+};
+
+/// What all tables are made of.
+struct Comparison {
+  const CompareMethods& settings;
+  const Collected<Table>& methods;
+  std::optional<std::size_t> against = {};
+  std::vector<bool> tested = {};            ///< of each method
+  Pairs pairs = {};                         ///< of those tested
+  std::vector<std::string> described = {};  ///< scores
+  std::vector<Ranking> rankings = {};
+  std::map<std::string, MethodScores> scores = {};  ///< those described and those ranked by
+};
+
+SignedRank test_of(const std::vector<double>& differences) {
+  return differences.empty() ? SignedRank{.p = NAN, .effect = NAN} : signed_rank(differences);
+}
+
+std::size_t place_of(const Collected<Table>& methods, const std::string& name) {
+  const auto& keys = methods.keys();
+  const auto at = std::find(keys.begin(), keys.end(), name);
+  if (at == keys.end())
+    throw std::runtime_error(fmt::format("there is no method \"{}\"; there are {}", name, fmt::join(keys, ", ")));
+  return static_cast<std::size_t>(at - keys.begin());
+}
 
 Pairs pairs_of(const std::vector<bool>& tested) {
   Pairs pairs;
@@ -64,43 +62,6 @@ Pairs pairs_of(const std::vector<bool>& tested) {
       if (tested[i] && tested[j]) pairs.emplace_back(i, j);
   return pairs;
 }
-
-std::vector<SequenceScores> scores_by_method(const Collected<Table>& methods, const std::string& name) {
-  std::vector<SequenceScores> scores;
-  for (std::size_t i = 0; i < methods.size(); ++i) scores.push_back(sequence_scores(methods[i], name));
-  return scores;
-}
-
-PairTests test_pairs(const Pairs& pairs, const std::vector<SequenceScores>& scores, Correction correction) {
-  PairTests tests;
-  for (const auto& [i, j] : pairs) {
-    tests.differences.push_back(paired_differences(scores[i], scores[j]));
-    tests.p.push_back(p_of(tests.differences.back()));
-  }
-  tests.p = corrected(tests.p, correction);
-  return tests;
-}
-
-Table paired(const CompareMethods& settings, const Collected<Table>& methods, const Pairs& pairs,
-             const std::vector<std::string>& names) {
-  Table out{settings.title + ": differences", "pair", {}, {}, std::vector<std::vector<double>>(pairs.size())};
-  for (const auto& [i, j] : pairs) out.rows.push_back(methods.key(i) + " - " + methods.key(j));
-  for (const auto& name : names) {
-    for (const char* what : {"", " p", " effect"}) out.columns.push_back(name + what);
-    const auto [differences, p] = test_pairs(pairs, scores_by_method(methods, name), settings.correction);
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const double effect = differences[k].empty() ? NAN : signed_rank(differences[k]).effect;
-      out.cells[k].insert(out.cells[k].end(), {mean_of(differences[k]), p[k], effect});
-    }
-  }
-  return out;
-}
-
-/// A score that methods are ranked by.
-struct Ranking {
-  std::string score;
-  double sign;  ///< 1 if the larger is better, -1 if the smaller
-};
 
 std::vector<Ranking> rankings_of(const CompareMethods& settings, const Collected<Table>& methods) {
   std::vector<Ranking> rankings;
@@ -114,6 +75,78 @@ std::vector<Ranking> rankings_of(const CompareMethods& settings, const Collected
     }
   scores_of(methods, names);
   return rankings;
+}
+
+MethodScores method_scores(const Comparison& c, const std::string& name) {
+  MethodScores scores;
+  for (std::size_t i = 0; i < c.methods.size(); ++i) scores.by_method.push_back(sequence_scores(c.methods[i], name));
+  for (const auto& [i, j] : c.pairs) {
+    const auto differences = paired_differences(scores.by_method[i], scores.by_method[j]);
+    const SignedRank test = test_of(differences);
+    scores.differences.push_back(mean_of(differences));
+    scores.p.push_back(test.p);
+    scores.effects.push_back(test.effect);
+  }
+  scores.p = corrected(scores.p, c.settings.correction);
+  return scores;
+}
+
+Comparison comparison_of(const CompareMethods& settings, const Collected<Table>& methods) {
+  Comparison c{.settings = settings, .methods = methods};
+  c.tested.assign(methods.size(), true);
+  if (!settings.against.empty()) c.against = place_of(methods, settings.against);
+  for (const auto& name : settings.aside) c.tested[place_of(methods, name)] = false;
+  c.pairs = pairs_of(c.tested);
+  c.described = scores_of(methods, settings.scores);
+  c.rankings = rankings_of(settings, methods);
+  std::set<std::string> wanted(c.described.begin(), c.described.end());
+  for (const auto& ranking : c.rankings) wanted.insert(ranking.score);
+  for (const auto& name : wanted) c.scores[name] = method_scores(c, name);
+  return c;
+}
+
+/// Of each method's test against one, corrected over the methods.
+std::vector<double> p_against(const Comparison& c, const std::vector<SequenceScores>& by_method) {
+  std::vector<double> p(by_method.size(), NAN);
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (c.tested[i] && i != *c.against) p[i] = test_of(paired_differences(by_method[i], by_method[*c.against])).p;
+  return corrected(p, c.settings.correction);
+}
+
+Table described(const Comparison& c, Random& random) {
+  const CompareMethods& settings = c.settings;
+  Table out{settings.title, "method", {}, c.methods.keys(), std::vector<std::vector<double>>(c.methods.size())};
+  for (const auto& name : c.described) {
+    for (const char* what : {"", " std", " low", " high"}) out.columns.push_back(name + what);
+    const auto& by_method = c.scores.at(name).by_method;
+    for (std::size_t i = 0; i < by_method.size(); ++i) {
+      const auto values = values_of(by_method[i]);
+      const auto [low, high] = settings.interval == IntervalKind::student
+                                   ? student_interval(values, settings.confidence)
+                                   : bootstrap_interval(values, settings.confidence, settings.samples, random);
+      out.cells[i].insert(out.cells[i].end(), {mean_of(values), deviation_of(values), low, high});
+    }
+    if (!c.against) continue;
+    out.columns.push_back(name + " p");
+    const auto p = p_against(c, by_method);
+    for (std::size_t i = 0; i < p.size(); ++i) out.cells[i].push_back(p[i]);
+  }
+  out.columns.emplace_back("sequences");
+  for (std::size_t i = 0; i < c.methods.size(); ++i)
+    out.cells[i].push_back(static_cast<double>(c.methods[i].rows.size()));
+  return out;
+}
+
+Table paired(const Comparison& c) {
+  Table out{c.settings.title + ": differences", "pair", {}, {}, std::vector<std::vector<double>>(c.pairs.size())};
+  for (const auto& [i, j] : c.pairs) out.rows.push_back(c.methods.key(i) + " - " + c.methods.key(j));
+  for (const auto& name : c.described) {
+    for (const char* what : {"", " p", " effect"}) out.columns.push_back(name + what);
+    const auto& [by_method, differences, p, effects] = c.scores.at(name);
+    for (std::size_t k = 0; k < c.pairs.size(); ++k)
+      out.cells[k].insert(out.cells[k].end(), {differences[k], p[k], effects[k]});
+  }
+  return out;
 }
 
 /// The best score of each sequence that a tested method has.
@@ -144,12 +177,14 @@ std::vector<std::size_t> best_first(const std::vector<double>& means) {
   return order;
 }
 
-/// All methods, the best by the first ranking first; as they are if there is none.
-std::vector<std::size_t> first_ranked(const Collected<Table>& methods, const std::vector<bool>& tested,
-                                      const std::vector<Ranking>& rankings) {
-  if (rankings.empty()) return best_first(std::vector<double>(methods.size()));
-  const auto& [name, sign] = rankings[0];
-  return best_first(ranked_means(scores_by_method(methods, name), tested, sign));
+/// The methods that are tested, the best by the first ranking first; as they are if there is none.
+std::vector<std::size_t> first_ranked(const Comparison& c) {
+  const auto means = c.rankings.empty()
+                         ? std::vector<double>(c.methods.size())
+                         : ranked_means(c.scores.at(c.rankings[0].score).by_method, c.tested, c.rankings[0].sign);
+  auto order = best_first(means);
+  std::erase_if(order, [&](std::size_t i) { return !c.tested[i]; });
+  return order;
 }
 
 double value_or_nan(const SequenceScores& scores, const std::string& sequence) {
@@ -157,75 +192,65 @@ double value_or_nan(const SequenceScores& scores, const std::string& sequence) {
   return found == scores.end() ? NAN : found->second;
 }
 
-Table by_sequence(const CompareMethods& settings, const Collected<Table>& methods, const std::vector<bool>& tested,
-                  const std::vector<Ranking>& rankings) {
-  Table out{settings.title + ": each sequence", "sequence", {}, {}, {}};
+Table by_sequence(const Comparison& c) {
+  Table out{c.settings.title + ": each sequence", "sequence", {}, {}, {}};
   std::set<std::string> seen;
-  for (std::size_t i = 0; i < methods.size(); ++i)
-    for (const auto& sequence : methods[i].rows)
+  for (std::size_t i = 0; i < c.methods.size(); ++i)
+    for (const auto& sequence : c.methods[i].rows)
       if (seen.insert(sequence).second) out.rows.push_back(sequence);
   out.cells.resize(out.rows.size());
   const auto add = [&](const std::string& column, const SequenceScores& scores) {
     out.columns.push_back(column);
     for (std::size_t r = 0; r < out.rows.size(); ++r) out.cells[r].push_back(value_or_nan(scores, out.rows[r]));
   };
-  for (const auto& [name, sign] : rankings) {
-    const auto scores = scores_by_method(methods, name);
-    add(name, best_scores(scores, tested, sign));
-    for (const std::size_t i : best_first(ranked_means(scores, tested, sign)))
-      add(name + ": " + methods.key(i), scores[i]);
+  for (const auto& [name, sign] : c.rankings) {
+    const auto& by_method = c.scores.at(name).by_method;
+    add(name, best_scores(by_method, c.tested, sign));
+    for (const std::size_t i : best_first(ranked_means(by_method, c.tested, sign)))
+      add(name + ": " + c.methods.key(i), by_method[i]);
   }
   return out;
 }
 
-Table behind_best(const CompareMethods& settings, const Collected<Table>& methods, const std::vector<bool>& tested,
-                  const Pairs& pairs, const std::vector<Ranking>& rankings) {
-  Table out{settings.title + ": behind the best, and sequences won", "method", {}, {}, {}};
-  std::vector<std::vector<double>> cells(methods.size());
-  for (const auto& [name, sign] : rankings) {
-    for (const char* what : {" behind", " behind p", " won"}) out.columns.push_back(name + what);
-    const auto scores = scores_by_method(methods, name);
-    const auto tests = test_pairs(pairs, scores, settings.correction);
-    const auto means = ranked_means(scores, tested, sign);
-    const auto best = static_cast<std::size_t>(std::max_element(means.begin(), means.end()) - means.begin());
-    std::vector<double> behind(methods.size(), NAN), p(methods.size(), NAN);
-    if (best < means.size() && means[best] > -INFINITY) behind[best] = 0;
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const auto [i, j] = pairs[k];
-      if (i != best && j != best) continue;
-      const std::size_t other = i == best ? j : i;
-      const double difference = mean_of(tests.differences[k]);
-      behind[other] = (i == best) == (sign > 0) ? difference : 0 - difference;  // never -0
-      p[other] = tests.p[k];
-    }
-    const auto bests = best_scores(scores, tested, sign);
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-      const auto won = std::count_if(scores[i].begin(), scores[i].end(), [&](const auto& score) {
-        return same_score(score.second, value_or_nan(bests, score.first));
-      });
-      cells[i].insert(cells[i].end(), {behind[i], p[i], static_cast<double>(won)});
-    }
+/// Of each method: how far behind the best, p of that, sequences won.
+std::vector<std::vector<double>> standings(const Comparison& c, const Ranking& ranking) {
+  const auto& [by_method, differences, p, effects] = c.scores.at(ranking.score);
+  std::vector<std::vector<double>> cells(by_method.size(), {NAN, NAN, 0});
+  const auto means = ranked_means(by_method, c.tested, ranking.sign);
+  const auto best = static_cast<std::size_t>(std::max_element(means.begin(), means.end()) - means.begin());
+  if (best < means.size() && means[best] > -INFINITY) cells[best][0] = 0;
+  for (std::size_t k = 0; k < c.pairs.size(); ++k) {
+    const auto [i, j] = c.pairs[k];
+    if (i != best && j != best) continue;
+    auto& other = cells[i == best ? j : i];
+    other[0] = (i == best) == (ranking.sign > 0) ? differences[k] : 0 - differences[k];  // never -0
+    other[1] = p[k];
   }
-  for (const std::size_t i : first_ranked(methods, tested, rankings))
-    if (tested[i]) out.rows.push_back(methods.key(i)), out.cells.push_back(std::move(cells[i]));
+  const auto bests = best_scores(by_method, c.tested, ranking.sign);
+  for (std::size_t i = 0; i < by_method.size(); ++i)
+    for (const auto& [sequence, value] : by_method[i]) cells[i][2] += same_score(value, value_or_nan(bests, sequence));
+  return cells;
+}
+
+Table behind_best(const Comparison& c) {
+  Table out{c.settings.title + ": behind the best, and sequences won", "method", {}, {}, {}};
+  const auto order = first_ranked(c);
+  for (const std::size_t i : order) out.rows.push_back(c.methods.key(i));
+  out.cells.resize(out.rows.size());
+  for (const auto& ranking : c.rankings) {
+    for (const char* what : {" behind", " behind p", " won"}) out.columns.push_back(ranking.score + what);
+    const auto cells = standings(c, ranking);
+    for (std::size_t row = 0; row < order.size(); ++row)
+      out.cells[row].insert(out.cells[row].end(), cells[order[row]].begin(), cells[order[row]].end());
+  }
   return out;
 }
 
 }  // namespace
 
 CompareMethods::Out CompareMethods::operator()(const Collected<Table>& sequences, Random& random) const {
-  if (!against.empty()) require_method(sequences, against);
-  std::vector<bool> tested(sequences.size(), true);
-  for (const auto& name : aside) {
-    require_method(sequences, name);
-    for (std::size_t i = 0; i < sequences.size(); ++i)
-      if (sequences.key(i) == name) tested[i] = false;
-  }
-  const auto names = scores_of(sequences, scores);
-  const auto rankings = rankings_of(*this, sequences);
-  const Pairs pairs = pairs_of(tested);
-  return {described(*this, sequences, tested, names, random), paired(*this, sequences, pairs, names),
-          by_sequence(*this, sequences, tested, rankings), behind_best(*this, sequences, tested, pairs, rankings)};
+  const Comparison c = comparison_of(*this, sequences);
+  return {described(c, random), paired(c), by_sequence(c), behind_best(c)};
 }
 
 void describe(Description<CompareMethods>& d) {
