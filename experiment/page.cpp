@@ -162,13 +162,14 @@ std::string score_table(const Experiment& experiment, const OutputEstimates& est
 /// Says what the numbers behind ± and below the others are.
 std::string interval_note(const std::vector<Estimate>& estimates) {
   std::size_t repeats = 0, items = 0;
-  bool of_tables = false;
+  bool of_tables = false, behind = false;
   for (const auto& e : estimates) {
     if (e.over == Estimate::Over::items)
       items = std::max(items, e.n);
     else
       repeats = std::max(repeats, e.n);
     of_tables = of_tables || e.over == Estimate::Over::table || !std::isnan(e.p);
+    behind = behind || (e.measure.ends_with(" behind") && !std::isnan(e.p));
   }
   std::string over, note;
   if (repeats > 1) over = fmt::format("{} repeats with seeds of their own", repeats);
@@ -176,6 +177,10 @@ std::string interval_note(const std::vector<Estimate>& estimates) {
   if (!over.empty())
     note = fmt::format("Means over {}; after ± half the width of the 95 % confidence interval (Student's t). ", over);
   if (of_tables) note += "Below a number stand the confidence interval and the p that the table of its run gives.";
+  if (behind)
+    note +=
+        " Behind is behind the method of the best mean, with p of Wilcoxon's signed-rank test of the two, sequence by "
+        "sequence, corrected over all pairs of methods (Holm's correction unless the graph names another).";
   return note.empty() ? "One run of each setting: there are no confidence intervals." : note;
 }
 

@@ -124,12 +124,28 @@ TEST(Results, IntervalsOfATableStayWithTheirScores) {
   EXPECT_THAT(page, HasSubstr("<td>0.5<br><small>0.25 to 0.75</small><br><small>p = 0.013</small></td><td>7</td>"));
   EXPECT_THAT(page, HasSubstr("<td>0</td><td>–</td>"));
   EXPECT_THAT(page, Not(HasSubstr("no confidence intervals")));
+  EXPECT_THAT(page, Not(HasSubstr("Wilcoxon"))) << "where nothing is behind";
   EXPECT_THAT(tidy_csv(e, results), HasSubstr(",acc low,0.25\n")) << "all numbers";
 
   const auto repeated = estimate(e, {table, table, {}, {}});
   EXPECT_EQ(repeated[0].over, Estimate::Over::repeats);
   EXPECT_EQ(repeated[0].low, 0.5) << "no interval within a run";
   EXPECT_TRUE(std::isnan(repeated[0].p));
+}
+
+TEST(Results, SayWhatBehindIsAndItsP) {
+  const auto page = html_results(two_settings(),
+                                 {result_of({{"scores", "", "ours", "acc", 0.5},
+                                             {"scores", "", "ours", "acc p", 0.25},
+                                             {"best", "", "ours", "acc behind", 0.125},
+                                             {"best", "", "ours", "acc behind p", 0.0625}}),
+                                  {},
+                                  {},
+                                  {}},
+                                 "");
+  EXPECT_THAT(page, HasSubstr("gives. Behind is behind the method of the best mean, with p of Wilcoxon"));
+  EXPECT_THAT(page, HasSubstr("over all pairs of methods"));
+  EXPECT_THAT(page, HasSubstr("<td>0.125<br><small>p = 0.062</small></td>"));
 }
 
 TEST(Results, PlotsAreLinesOverANumberAndBarsElse) {
