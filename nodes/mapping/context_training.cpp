@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 
 #include "nodes/mapping/context_frames.h"
+#include "nodes/mapping/phone_inventory.h"
 
 namespace talkgraph {
 namespace {
@@ -29,11 +29,11 @@ void z_score(const Utterances& utterances, ContextGp& model) {
       (deviation.array() > 1e-10 * model.audio_mean.array().abs()).select(deviation.cwiseInverse(), 0.0);
 }
 
-std::vector<std::string> inventory(const Utterances& utterances) {
-  std::set<std::string> met;
+std::vector<std::string> phones_of(const Utterances& utterances) {
+  std::vector<std::string> labels;
   for (const auto& u : utterances)
-    for (const auto& phone : u.phones->phones) met.insert(phone.label);
-  return {met.begin(), met.end()};
+    for (const auto& phone : u.phones->phones) labels.push_back(phone.label);
+  return phone_inventory(std::move(labels));
 }
 
 Eigen::RowVectorXd window_of(int reach, double width) {
@@ -94,7 +94,7 @@ ContextTraining context_training(const TrainContextGp& node, const Collected<Tra
                                  const Collected<PhoneTrack>& phones, const Collected<Track>& visual) {
   ContextTraining t{{}, context_utterances(audio, phones, visual), {}, {}};
   z_score(t.utterances, t.model);
-  t.model.phones = inventory(t.utterances);
+  t.model.phones = phones_of(t.utterances);
   set_kernel(node, t.model);
   describe_frames(t.utterances, t.model);
   t.rows = frames_to_learn(node, t.utterances);

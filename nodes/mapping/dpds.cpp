@@ -8,6 +8,7 @@
 #include "nodes/latent/normal.h"
 #include "nodes/latent/sequences.h"
 #include "nodes/mapping/dpds_objective.h"
+#include "nodes/mapping/phone_inventory.h"
 #include "nodes/mapping/scaling.h"
 #include "nodes/types/paired.h"
 
@@ -15,19 +16,13 @@ namespace talkgraph {
 
 namespace {
 
-std::vector<std::string> sorted_phones(std::vector<std::string> labels) {
-  std::sort(labels.begin(), labels.end());
-  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
-  return labels;
-}
-
 StateRuns runs_of(const std::vector<std::string>& phones, const std::vector<std::string>& labels,
                   const std::vector<std::int64_t>& lengths) {
   StateRuns runs{{}, std::ssize(phones)};
   auto label = labels.begin();
   for (const auto length : lengths) {
     auto& sequence = runs.sequences.emplace_back();
-    for (std::int64_t t = 0; t < length; ++t) sequence.push_back(state_of(phones, *label++));
+    for (std::int64_t t = 0; t < length; ++t) sequence.push_back(place_of(phones, *label++));
   }
   return runs;
 }
@@ -70,18 +65,13 @@ void add_trace(std::vector<double>& all, const std::vector<double>& costs) {
 
 }  // namespace
 
-Eigen::Index state_of(const std::vector<std::string>& phones, const std::string& phone) {
-  const auto found = std::lower_bound(phones.begin(), phones.end(), phone);
-  return found != phones.end() && *found == phone ? found - phones.begin() : std::ssize(phones);
-}
-
 Dpds TrainDpds::operator()(const Collected<Track>& visual, const Collected<FrameLabels>& labels,
                            Context& context) const {
   const Labelled training = labelled(visual, labels);
   const Sequences data = measured_runs(training.tracks);
   Dpds model;
   model.visual = scaling_of(data.frames);
-  model.phones = sorted_phones(training.labels);
+  model.phones = phone_inventory(training.labels);
   const Eigen::MatrixXd frames = scaled(model.visual, data.frames);
   const StateRuns runs = runs_of(model.phones, training.labels, data.lengths);
   const Eigen::Index dims = frames.cols();

@@ -24,7 +24,4 @@ struct TrainDpds {
 };
 void describe(Description<TrainDpds>& d);
 
-/// The number of a phone in a sorted list, or its size if it is not there.
-Eigen::Index state_of(const std::vector<std::string>& phones, const std::string& phone);
-
 }  // namespace talkgraph

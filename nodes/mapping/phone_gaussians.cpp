@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "nodes/latent/normal.h"
 #include "nodes/latent/sequences.h"
+#include "nodes/mapping/phone_inventory.h"
 #include "nodes/mapping/scaling.h"
 #include "nodes/mapping/trajectory_error.h"
 #include "nodes/types/paired.h"
@@ -38,11 +38,6 @@ StatePath path_through(const PhoneGaussians& model, Phones phones) {
   return path;
 }
 
-Eigen::Index row_of(const PhoneGaussians& model, const std::string& phone) {
-  const auto at = std::lower_bound(model.phones.begin(), model.phones.end(), phone);
-  return at != model.phones.end() && *at == phone ? at - model.phones.begin() : std::ssize(model.phones);
-}
-
 /// Means and variances over each phone's frames.
 void learn_gaussians(PhoneGaussians& model, const Eigen::MatrixXd& frames, const Phones& phones, double floor) {
   const Eigen::Index count = std::ssize(model.phones), dimensions = frames.cols();
@@ -69,10 +64,9 @@ PhoneGaussians TrainPhoneGaussians::operator()(const Collected<Track>& visual, c
   model.order = order;
   model.scaling = scaling_of(data.frames);
   data.frames = scaled(model.scaling, data.frames);
-  const std::set<std::string> phones(all.labels.begin(), all.labels.end());
-  model.phones.assign(phones.begin(), phones.end());
+  model.phones = phone_inventory(all.labels);
   Phones rows;
-  for (const auto& label : all.labels) rows.push_back(row_of(model, label));
+  for (const auto& label : all.labels) rows.push_back(place_of(model.phones, label));
   learn_gaussians(model, data.frames, rows, floor);
 
   std::vector<StatePath> paths;
@@ -90,7 +84,7 @@ PhoneGaussians TrainPhoneGaussians::operator()(const Collected<Track>& visual, c
 
 Track SynthesisePhoneGaussians::operator()(const PhoneGaussians& model, const FrameLabels& labels) const {
   Phones rows;
-  for (const auto& label : labels.labels) rows.push_back(row_of(model, label));
+  for (const auto& label : labels.labels) rows.push_back(place_of(model.phones, label));
   Track out;
   out.values = restored(model.scaling, trajectory(gaussians_of(model), path_through(model, std::move(rows))));
   out.rate = labels.rate;
