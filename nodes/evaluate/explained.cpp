@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "nodes/types/paired.h"
+
 namespace talkgraph {
 namespace {
 
@@ -22,9 +24,9 @@ void append(Eigen::MatrixXd& rows, const Eigen::MatrixXd& more) {
   rows.bottomRows(more.rows()) = more;
 }
 
-std::vector<Eigen::Index> measured_in_both(const Track& a, const Track& b) {
+std::vector<Eigen::Index> measured_in_both(const Track& a, const Track& b, Eigen::Index frames) {
   std::vector<Eigen::Index> rows;
-  for (Eigen::Index t = 0; t < std::min(a.frames(), b.frames()); ++t)
+  for (Eigen::Index t = 0; t < frames; ++t)
     if (!a.is_lost(t) && !b.is_lost(t)) rows.push_back(t);
   return rows;
 }
@@ -45,9 +47,8 @@ PairedRows paired_rows(const Collected<Track>& truth, const Collected<Track>& by
     if (!other) continue;
     check_dimension(key, truth[i], truth[0]);
     check_dimension(key, *other, by[0]);
-    if (std::abs(truth[i].frames() - other->frames()) > 2)
-      throw std::runtime_error(fmt::format("{}: {} frames against {}", key, truth[i].frames(), other->frames()));
-    const auto rows = measured_in_both(truth[i], *other);
+    const auto frames = common_frames(key, truth[i].frames(), "frames to be explained", other->frames(), "frames");
+    const auto rows = measured_in_both(truth[i], *other, frames);
     append(out.truth, truth[i].values(rows, Eigen::all));
     append(out.by, other->values(rows, Eigen::all));
   }

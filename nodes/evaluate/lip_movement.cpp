@@ -8,31 +8,13 @@
 
 #include "nodes/evaluate/derivative_warping.h"
 #include "nodes/evaluate/lips.h"
+#include "nodes/evaluate/mean.h"
 #include "nodes/evaluate/score.h"
+#include "nodes/types/paired.h"
 #include "nodes/types/scheme.h"
 
 namespace talkgraph {
 namespace {
-
-class Mean {
- public:
-  void add(double value) {
-    sum_ += value;
-    ++count_;
-  }
-  void store(Scores& scores, const char* name, double unit) const {
-    if (count_ > 0) scores.values[name] = sum_ / count_ / unit;
-  }
-
- private:
-  double sum_ = 0;
-  int count_ = 0;
-};
-
-void check_length(const char* what, std::size_t frames, std::size_t of) {
-  if (frames > of + 2 || of > frames + 2)
-    throw std::runtime_error(fmt::format("true landmarks of {} frames, {} of {}", of, what, frames));
-}
 
 /// Mean over the frames that have landmarks.
 double true_length(const LandmarkTrack& truth, const std::vector<std::string>& unit) {
@@ -106,8 +88,9 @@ void score_distances(const std::vector<Lips>& frames, double unit, Scores& score
 
 std::optional<Scores> LipMovement::operator()(const LandmarkTrack& truth, const LandmarkTrack& predicted,
                                               const Mask& speech) const {
-  check_length("synthesised ones", predicted.frames.size(), truth.frames.size());
-  check_length("marks of speech", speech.frames.size(), truth.frames.size());
+  const auto true_frames = std::ssize(truth.frames);
+  common_frames("the sequence", true_frames, "true frames", std::ssize(predicted.frames), "synthesised ones");
+  common_frames("the sequence", true_frames, "true frames", std::ssize(speech.frames), "marks of speech");
   if (truth.frames.empty() || predicted.frames.empty()) return {};
   const auto frames = lips_of(truth, predicted, speech, lip_points(truth, predicted, points));
   const double length = true_length(truth, unit);

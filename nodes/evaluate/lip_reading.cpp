@@ -1,13 +1,10 @@
 #include "nodes/evaluate/lip_reading.h"
 
-#include <fmt/format.h>
-
-#include <stdexcept>
-
 #include "nodes/evaluate/edit_path.h"
 #include "nodes/evaluate/lip_reader.h"
 #include "nodes/latent/hmm.h"
 #include "nodes/latent/sequences.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 namespace {
@@ -40,8 +37,7 @@ std::vector<std::string> read_lips(const LipReader& reader, const Track& track, 
 
 std::optional<Scores> ScoreLipReading::operator()(const LipReader& reader, const Track& track,
                                                   const FrameLabels& labels) const {
-  if (std::abs(track.frames() - std::ssize(labels.labels)) > 2)
-    throw std::runtime_error(fmt::format("{} frames, but {} labels", track.frames(), labels.labels.size()));
+  common_frames("the sequence", track.frames(), "frames", std::ssize(labels.labels), "labels");
   std::vector<std::string> units;
   for (const auto& phone : labels.labels) units.push_back(lip_unit(phone, reader.visemes));
   const auto said = spoken(units), read = spoken(read_lips(reader, track, insertion));

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "nodes/evaluate/lips.h"
+#include "nodes/evaluate/mean.h"
+#include "nodes/types/paired.h"
 
 namespace talkgraph {
 namespace {
@@ -18,28 +20,11 @@ Eigen::VectorXd finite(const Eigen::VectorXd& values) {
   return values(there);
 }
 
-class Mean {
- public:
-  void add(double value, double weight = 1) {
-    sum_ += weight * value;
-    count_ += weight;
-  }
-  void store(Scores& scores, const char* name) const {
-    if (count_ > 0) scores.values[name] = sum_ / count_;
-  }
-
- private:
-  double sum_ = 0, count_ = 0;
-};
-
 }  // namespace
 
 std::optional<Scores> MouthOpening::operator()(const LandmarkTrack& landmarks, const FrameLabels& labels) const {
-  const auto length = static_cast<std::ptrdiff_t>(labels.labels.size());
-  if (std::abs(length - static_cast<std::ptrdiff_t>(landmarks.frames.size())) > 2)
-    throw std::runtime_error("landmarks of " + std::to_string(landmarks.frames.size()) + " frames, labels of " +
-                             std::to_string(length));
-  const auto frames = std::min<Eigen::Index>(length, static_cast<Eigen::Index>(landmarks.frames.size()));
+  const auto frames = common_frames("the sequence", std::ssize(landmarks.frames), "frames with landmarks",
+                                    std::ssize(labels.labels), "labels");
   if (frames == 0) return {};
   const Eigen::VectorXd widths = finite(point_distance(landmarks, left, right));
   if (widths.size() == 0) return {};

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "nodes/types/paired.h"
 #include "nodes/types/scheme.h"
 
 namespace talkgraph {
@@ -169,10 +170,8 @@ std::optional<Scores> ComparePictures::operator()(const Video& recorded, const V
   if (recorded.source->size() != drawn.source->size())
     throw std::runtime_error(recorded.source->name() + " and " + drawn.source->name() + " differ in size");
   const auto frames = recorded.source->frames();
-  for (const auto other : {drawn.source->frames(), static_cast<std::int64_t>(landmarks.frames.size())})
-    if (std::abs(frames - other) > 2)
-      throw std::runtime_error(
-          fmt::format("{} has {} frames, what it is compared with {}", recorded.source->name(), frames, other));
+  common_frames(recorded.source->name(), frames, "frames recorded", drawn.source->frames(), "drawn");
+  common_frames(recorded.source->name(), frames, "frames recorded", std::ssize(landmarks.frames), "with landmarks");
   const auto with_points =
       std::find_if(landmarks.frames.begin(), landmarks.frames.end(), [](const Shape& s) { return s.rows() > 0; });
   if (with_points == landmarks.frames.end()) return {};

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "nodes/types/paired.h"
+
 namespace talkgraph {
 namespace {
 
@@ -37,13 +39,9 @@ ScoredFrames scored_frames(const Track& truth, const Track& predicted, const Mas
   if (truth.dimension() != predicted.dimension() || truth.dimension() == 0)
     throw std::runtime_error("truth has " + std::to_string(truth.dimension()) + " dimensions, the prediction " +
                              std::to_string(predicted.dimension()));
-  if (std::abs(truth.frames() - predicted.frames()) > 2)
-    throw std::runtime_error("truth has " + std::to_string(truth.frames()) + " frames, the prediction " +
-                             std::to_string(predicted.frames()));
-  const auto frames = std::min(truth.frames(), predicted.frames());
-  if (speech && std::abs(static_cast<Eigen::Index>(speech->frames.size()) - frames) > 2)
-    throw std::runtime_error("speech is marked for " + std::to_string(speech->frames.size()) + " frames of " +
-                             std::to_string(frames));
+  const auto frames =
+      common_frames("the sequence", truth.frames(), "frames of the truth", predicted.frames(), "of the prediction");
+  if (speech) common_frames("the sequence", frames, "frames", std::ssize(speech->frames), "marks of speech");
   const auto rows = counted(truth, frames, speech);
   ScoredFrames both{truth.values(rows, Eigen::all), predicted.values(rows, Eigen::all)};
   if (!both.truth.allFinite() || !both.predicted.allFinite())

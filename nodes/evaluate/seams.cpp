@@ -1,15 +1,12 @@
 #include "nodes/evaluate/seams.h"
 
-#include <stdexcept>
-
+#include "nodes/types/paired.h"
 #include "nodes/types/visemes.h"
 
 namespace talkgraph {
 
 std::optional<Scores> Seams::operator()(const Track& track, const SegmentTrack& segments) const {
-  if (std::abs(track.values.rows() - static_cast<Eigen::Index>(segments.frames)) > 2)
-    throw std::runtime_error("a track of " + std::to_string(track.values.rows()) + " frames, segments of " +
-                             std::to_string(segments.frames));
+  common_frames("the sequence", track.frames(), "frames of the track", segments.frames, "of the segments");
   double at_seams = 0, inside = 0;
   int seams = 0, steps = 0;
   for (const auto& s : segments.segments) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "nodes/types/paired.h"
+
 namespace talkgraph {
 namespace {
 
@@ -26,8 +28,10 @@ void score_confidence(const FaceTrack& track, Scores& scores) {
 }
 
 void score_landmarks(const FaceTrack& track, const LandmarkTrack& given, Scores& scores) {
+  const auto frames = common_frames("the sequence", std::ssize(track.shapes), "tracked frames",
+                                    std::ssize(given.frames), "frames with given landmarks");
   double sum = 0, worst = 0, counted = 0;
-  for (std::size_t t = 0; t < std::min(track.shapes.size(), given.frames.size()); ++t) {
+  for (std::size_t t = 0; t < static_cast<std::size_t>(frames); ++t) {
     const Shape &found = track.shapes[t], &wanted = given.frames[t];
     if (found.rows() != wanted.rows())
       throw std::runtime_error(
@@ -49,10 +53,6 @@ Scores ScoreTracking::operator()(const FaceTrack& track, const LandmarkTrack* gi
   Scores scores;
   score_confidence(track, scores);
   if (!given) return scores;
-  const auto length = [](const auto& list) { return static_cast<std::ptrdiff_t>(list.size()); };
-  if (std::abs(length(track.shapes) - length(given->frames)) > 2)
-    throw std::runtime_error(
-        fmt::format("{} frames were tracked, landmarks are given for {}", track.shapes.size(), given->frames.size()));
   score_landmarks(track, *given, scores);
   return scores;
 }
