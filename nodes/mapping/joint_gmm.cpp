@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <tuple>
 
 #include "nodes/latent/em.h"
 #include "nodes/latent/gmm.h"
@@ -56,13 +57,11 @@ JointGmm TrainJointGmm::operator()(const Collected<Track>& audio, const Collecte
                                    Context& context) const {
   const JoinedStreams both = side_by_side(audio, visual);
   const Sequences data = measured_runs(both.tracks);
-  const Scaling scaling = scaling_of(data.frames);
   JointGmm model;
-  model.audio = part_of(scaling, 0, both.audio);
-  model.visual = part_of(scaling, both.audio, scaling.mean.size() - both.audio);
+  std::tie(model.audio, model.visual) = split(scaling_of(data.frames), both.audio);
   const Eigen::MatrixXd heard = scaled(model.audio, data.frames.leftCols(both.audio)),
                         seen = scaled(model.visual, data.frames.rightCols(model.visual.mean.size()));
-  Eigen::MatrixXd joint(heard.rows(), 2 * scaling.mean.size());
+  Eigen::MatrixXd joint(heard.rows(), 2 * data.frames.cols());
   joint << blocks_beside(frames_and_slopes, 2, heard, data.lengths),
       blocks_beside(frames_and_slopes, 2, seen, data.lengths);
   TrainGmm mixture;

@@ -14,8 +14,10 @@ Scaling scaling_of(const Eigen::MatrixXd& frames) {
   return s;
 }
 
-Scaling part_of(const Scaling& scaling, Eigen::Index from, Eigen::Index dims) {
-  return {scaling.mean.segment(from, dims), scaling.deviation.segment(from, dims)};
+std::pair<Scaling, Scaling> split(const Scaling& scaling, Eigen::Index dims) {
+  const Eigen::Index others = scaling.mean.size() - dims;
+  return {{scaling.mean.head(dims), scaling.deviation.head(dims)},
+          {scaling.mean.tail(others), scaling.deviation.tail(others)}};
 }
 
 Eigen::MatrixXd scaled(const Scaling& scaling, const Eigen::MatrixXd& frames) {

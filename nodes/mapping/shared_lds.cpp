@@ -20,8 +20,8 @@ SharedLds TrainSharedLds::operator()(const Collected<Track>& audio, const Collec
   train.floor = floor;
   train.iterations = iterations;
   train.tolerance = tolerance;
-  return {part_of(both, 0, heard), part_of(both, heard, both.mean.size() - heard),
-          train.fit(data, context, {.apart = heard})};
+  auto [of_sound, of_face] = split(both, heard);
+  return {std::move(of_sound), std::move(of_face), train.fit(data, context, {.apart = heard})};
 }
 
 void describe(Description<TrainSharedLds>& d) {

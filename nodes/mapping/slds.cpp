@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "nodes/latent/em.h"
 #include "nodes/latent/lds.h"
 #include "nodes/latent/lds_expectations.h"
@@ -81,7 +83,8 @@ Slds TrainSlds::operator()(const Collected<Track>& audio, const Collected<Track>
   const Eigen::Index heard = streams.audio;
   const Scaling both = scaling_of(data.frames);
   data.frames = scaled(both, data.frames);
-  Slds model{part_of(both, 0, heard), part_of(both, heard, both.mean.size() - heard), {}, {}, {}};
+  Slds model;
+  std::tie(model.audio, model.visual) = split(both, heard);
   TrainLds train;
   train.latent_dimension = latent_dimension;
   train.covariance = covariance;

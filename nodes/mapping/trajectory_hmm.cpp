@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "nodes/latent/em.h"
 #include "nodes/latent/hmm.h"
@@ -163,10 +164,8 @@ TrajectoryHmm TrainTrajectoryHmm::operator()(const Collected<Track>& audio, cons
   const JoinedStreams both = side_by_side(audio, visual);
   const Labelled training = labelled(both.tracks, labels);
   const Sequences data = measured_runs(training.tracks);
-  const Scaling scaling = scaling_of(data.frames);
   TrajectoryHmm model;
-  model.audio = part_of(scaling, 0, both.audio);
-  model.visual = part_of(scaling, both.audio, scaling.mean.size() - both.audio);
+  std::tie(model.audio, model.visual) = split(scaling_of(data.frames), both.audio);
   const Eigen::MatrixXd heard = scaled(model.audio, data.frames.leftCols(both.audio)),
                         seen = scaled(model.visual, data.frames.rightCols(model.visual.mean.size()));
   start_chain(model, states);

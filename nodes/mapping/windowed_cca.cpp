@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "nodes/latent/linear_models.h"
 #include "nodes/latent/sequences.h"
 #include "nodes/mapping/scaling.h"
@@ -43,16 +45,14 @@ Sequences training_windows(const WindowedCca& model, const Collected<Track>& tra
 WindowedCca TrainWindowedCca::operator()(const Collected<Track>& audio, const Collected<Track>& visual,
                                          Context& context) const {
   const JoinedStreams both = side_by_side(audio, visual);
-  const Scaling scaling = scaling_of(measured_runs(both.tracks).frames);
-  const Eigen::Index seen = scaling.mean.size() - both.audio;
   WindowedCca model;
   model.context = this->context;
-  model.audio = part_of(scaling, 0, both.audio);
-  model.visual = part_of(scaling, both.audio, seen);
+  std::tie(model.audio, model.visual) = split(scaling_of(measured_runs(both.tracks).frames), both.audio);
 
   const Eigen::MatrixXd windows = training_windows(model, both.tracks).frames;
   const Eigen::Index frames = 2 * model.context + 1;
-  const auto heard = windows.leftCols(frames * both.audio), shown = windows.rightCols(frames * seen);
+  const auto heard = windows.leftCols(frames * both.audio),
+             shown = windows.rightCols(frames * model.visual.mean.size());
   const Cca cca = fit_cca(heard, shown, dimensions);
   model.audio_mean = cca.mean_y;
   model.visual_mean = cca.mean_z;
