@@ -72,6 +72,24 @@ TEST(Experiments, OfAllMethodsTellWhoIsBestAndWhere) {
     }
 }
 
+// The styles' files cannot extend GRID's, whose graph is another one.
+TEST(Experiments, OfFiftySentencesHaveTheSameSettings) {
+  const auto settings = [](const std::string& of) {
+    Diagnostics diagnostics;
+    const auto experiment =
+        load_experiment(test::source("/pipelines/experiments/table-6-1-") + of + ".json", diagnostics);
+    EXPECT_TRUE(experiment) << diagnostics.str();
+    std::map<std::string, Json> values;
+    for (const auto& change : experiment->set)
+      if (change.path.starts_with("nodes.")) values[change.path] = change.value.plain();
+    return values;
+  };
+  const auto of_grid = settings("grid-s1");
+  EXPECT_GT(of_grid.size(), 20u);
+  EXPECT_EQ(settings("lips"), of_grid);
+  EXPECT_EQ(settings("demnow"), of_grid);
+}
+
 TEST(Experiments, OfSpeechWriteNothing) {
   const Registry registry = all_nodes();
   for (const char* name : {"speech-parameters", "synchronisation-grid-s1"}) {
@@ -120,7 +138,8 @@ TEST(Pipelines, ComparedInAStyleHaveItsSettingsInEveryRow) {
     Diagnostics diagnostics;
     const auto graph = load_graph(test::source("/pipelines/") + std::string(name), registry, diagnostics);
     ASSERT_TRUE(graph) << diagnostics.str();
-    for (const char* row : {"learnt", "learnt_one", "learnt_one_source", "learnt_phones", "learnt_source", "learnt_static"}) {
+    for (const char* row :
+         {"learnt", "learnt_one", "learnt_one_source", "learnt_phones", "learnt_source", "learnt_static"}) {
       const Json& state = graph->resolved.at("nodes").at("face/" + std::string(row) + "/sgpdm").at("params");
       EXPECT_EQ(state.at("latent_dimension"), dimension) << row;
       EXPECT_EQ(state.at("dynamics_inverse_width"), 1000) << row;
