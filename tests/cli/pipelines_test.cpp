@@ -26,6 +26,14 @@ std::vector<std::string> pipelines() {
   return files;
 }
 
+Json nodes_of(const std::string& name) {
+  const Registry registry = all_nodes();
+  Diagnostics diagnostics;
+  const auto graph = load_graph(test::source("/pipelines/") + name, registry, diagnostics);
+  if (!graph) throw std::runtime_error(diagnostics.str());
+  return graph->resolved.at("nodes");
+}
+
 TEST(Pipelines, AreSound) {
   const Registry registry = all_nodes();
   EXPECT_GT(pipelines().size(), 8u);
@@ -117,36 +125,36 @@ TEST(Pipelines, LoadAgainFromWhatARunFolderKeeps) {
   }
 }
 
-TEST(Pipelines, OfTheSourcesCorporaLearnAsItDid) {
-  const Registry registry = all_nodes();
-  for (const auto& [name, dimension] : {std::pair{"lips.json", 5}, {"demnow.json", 4}}) {
-    Diagnostics diagnostics;
-    const auto graph = load_graph(test::source("/pipelines/") + std::string(name), registry, diagnostics);
-    ASSERT_TRUE(graph) << diagnostics.str();
-    const Json& nodes = graph->resolved.at("nodes");
-    const Json& state = nodes.at("face/learnt/sgpdm").at("params");
-    EXPECT_EQ(state.at("latent_dimension"), dimension);
-    EXPECT_EQ(state.at("inducing"), 100);
-    EXPECT_EQ(state.at("dynamics_inverse_width"), 1000);
-    EXPECT_EQ(nodes.at("face/learnt/contexts").at("params").at("order"), 6);
-  }
+void expect_settings_of_the_source(const Json& nodes, const std::string& learnt, int dimension,
+                                   const std::string& approximation) {
+  const Json& state = nodes.at(learnt + "/sgpdm").at("params");
+  EXPECT_EQ(state.at("latent_dimension"), dimension) << learnt;
+  EXPECT_EQ(state.at("approximation"), approximation) << learnt;
+  EXPECT_EQ(state.at("inducing"), 100) << learnt;
+  EXPECT_EQ(state.at("dynamics_inverse_width"), 1000) << learnt;
+  EXPECT_EQ(state.at("likelihood_bias"), true) << learnt;
+  EXPECT_EQ(state.at("dynamics_bias"), true) << learnt;
+  EXPECT_EQ(nodes.at(learnt + "/contexts").at("params").at("order"), 6) << learnt;
 }
 
-TEST(Pipelines, ComparedInAStyleHaveItsSettingsInEveryRow) {
-  const Registry registry = all_nodes();
-  for (const auto& [name, dimension] : {std::pair{"compared-lips.json", 5}, {"compared-demnow.json", 4}}) {
-    Diagnostics diagnostics;
-    const auto graph = load_graph(test::source("/pipelines/") + std::string(name), registry, diagnostics);
-    ASSERT_TRUE(graph) << diagnostics.str();
-    for (const char* row :
-         {"learnt", "learnt_one", "learnt_one_source", "learnt_phones", "learnt_source", "learnt_static"}) {
-      const Json& state = graph->resolved.at("nodes").at("face/" + std::string(row) + "/sgpdm").at("params");
-      EXPECT_EQ(state.at("latent_dimension"), dimension) << row;
-      EXPECT_EQ(state.at("dynamics_inverse_width"), 1000) << row;
-      EXPECT_EQ(state.at("likelihood_bias"), true) << row;
-      EXPECT_EQ(state.at("dynamics_bias"), true) << row;
-    }
-  }
+TEST(Pipelines, OfTheSourcesCorporaLearnAsItDid) {
+  expect_settings_of_the_source(nodes_of("lips.json"), "face/learnt", 5, "fitc");
+  expect_settings_of_the_source(nodes_of("demnow.json"), "face/learnt", 4, "pitc");
+}
+
+TEST(Pipelines, ComparedInAStyleHaveTheSourcesSettingsInItsRowsAlone) {
+  const Json chosen = nodes_of("compared-grid-s1.json");
+  const auto expect = [&](const std::string& name, int dimension, const std::string& approximation, double width) {
+    const Json nodes = nodes_of(name);
+    for (const std::string row : {"learnt", "learnt_one", "learnt_phones", "learnt_static"})
+      EXPECT_EQ(nodes.at("face/" + row + "/sgpdm").at("params"), chosen.at("face/" + row + "/sgpdm").at("params"))
+          << name << ", " << row;
+    for (const std::string row : {"learnt_source", "learnt_one_source"})
+      expect_settings_of_the_source(nodes, "face/" + row, dimension, approximation);
+    EXPECT_EQ(nodes.at("face/learnt_one_source/sgpdm").at("params").at("kbr_inverse_width"), width) << name;
+  };
+  expect("compared-lips.json", 5, "fitc", 1000);
+  expect("compared-demnow.json", 4, "pitc", 0.001);
 }
 
 // Each choice of speech parameters is one setting for training, synthesis and the graph that the model speaks with.
