@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -24,6 +25,11 @@ std::vector<std::string> pipelines() {
         entry.path().parent_path().filename() != "experiments" && entry.path().parent_path().filename() != "studies")
       files.push_back(entry.path().string());
   return files;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(test::source(path));
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 Json nodes_of(const std::string& name) {
@@ -155,6 +161,28 @@ TEST(Pipelines, ComparedInAStyleHaveTheSourcesSettingsInItsRowsAlone) {
   };
   expect("compared-lips.json", 5, "fitc", 1000);
   expect("compared-demnow.json", 4, "pitc", 0.001);
+}
+
+TEST(Pipelines, OfMouthsHaveTheSettingsOfTheTable) {
+  const Json mouths = nodes_of("mouth-measure-grid-s1.json"), faces = nodes_of("compared-grid-s1.json");
+  std::set<std::string> methods;
+  for (const auto& [key, node] : mouths.items()) {
+    const std::string name = key.starts_with("said/") ? key.substr(5) : "";
+    if (name.find('/') == std::string::npos || name.find("_score/") != std::string::npos) continue;
+    EXPECT_EQ(node.at("type"), faces.at("face/" + name).at("type")) << name;
+    EXPECT_EQ(node.at("params"), faces.at("face/" + name).at("params")) << name;
+    methods.insert(name.substr(0, name.find('/')));
+  }
+  EXPECT_GT(methods.size(), 20u);
+}
+
+TEST(Pipelines, OfAllMethodsLeaveNoneOut) {
+  for (const std::string table : {"compared.json", "mouth-methods.json"}) {
+    const std::string text = text_of("/pipelines/fragments/" + table);
+    for (const auto& entry : std::filesystem::directory_iterator(test::source("/pipelines/fragments/methods")))
+      EXPECT_NE(text.find("\"methods/" + entry.path().filename().string() + "\""), std::string::npos)
+          << table << " lacks " << entry.path().filename();
+  }
 }
 
 // Each choice of speech parameters is one setting for training, synthesis and the graph that the model speaks with.
