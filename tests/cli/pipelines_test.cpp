@@ -65,6 +65,15 @@ TEST(Experiments, AreSound) {
   EXPECT_GT(count, 0u);
 }
 
+TEST(Experiments, AreAllInTheEvaluation) {
+  const std::set<std::string> others = {"evaluation.json", "prototypes-grid-s1.json"};  // the latter of faces alone
+  const std::string evaluation = text_of("/pipelines/experiments/evaluation.json");
+  for (const auto& entry : std::filesystem::directory_iterator(test::source("/pipelines/experiments"))) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_EQ(evaluation.find("\"" + name + "\"") == std::string::npos, others.contains(name)) << name;
+  }
+}
+
 TEST(Experiments, OfAllMethodsTellWhoIsBestAndWhere) {
   const Registry registry = all_nodes();
   for (const std::string table : {"table-6-1-", "table-6-2-"})
