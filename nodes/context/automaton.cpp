@@ -82,12 +82,12 @@ std::string state_label(const Vlmm& vlmm, const std::string& context) {
     suffix.erase(0, dash + 1);
   }
   if (vlmm.trainable(suffix)) return suffix;
-  const std::string alike = commonest_alike(vlmm, suffix);
+  std::string alike = commonest_alike(vlmm, suffix);
   return vlmm.trainable(alike) || !vlmm.windows.contains(suffix) ? alike : suffix;
 }
 
 std::string state_label(const Vlmm& vlmm, const std::string& context, std::int64_t most) {
-  const std::string label = state_label(vlmm, context);
+  std::string label = state_label(vlmm, context);
   if (phone_count(label) <= most) return label;
   const auto phones = label_phones(label);
   return state_label(vlmm, join_phones(phones, phones.size() - static_cast<std::size_t>(most), phones.size()));

@@ -264,7 +264,7 @@ TEST(Lds, MoreStatesThanDimensionsSeeAnOscillation) {
 TEST(Lds, AnswersDegenerateData) {
   Context context;
   const auto fit = [&](const Eigen::MatrixXd& frames, std::vector<std::int64_t> lengths) {
-    const Lds model = TrainLds{}.fit({frames, std::move(lengths)}, context);
+    Lds model = TrainLds{}.fit({frames, std::move(lengths)}, context);
     const LdsPosterior p = kalman_smoother(model, frames);
     EXPECT_TRUE(std::isfinite(p.log_likelihood));
     EXPECT_TRUE(p.means.allFinite());
