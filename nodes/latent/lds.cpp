@@ -194,7 +194,7 @@ Eigen::MatrixXd stacked(const Sequences& data, Eigen::Index lags) {
 
 Lds start_lds(const Sequences& data, const TrainLds& options, const LdsConstraints& constraints) {
   const Eigen::Index d = options.latent_dimension, dims = data.frames.cols();
-  const Eigen::MatrixXd rows = stacked(data, (d + dims - 1) / dims);
+  const Eigen::MatrixXd rows = stacked(data, std::max<Eigen::Index>(2, (d + dims - 1) / dims));
   const Ppca ppca = fit_ppca(rows, d);
   const Eigen::MatrixXd x = ppca.posterior_mean(rows), covariance = ppca.posterior_covariance();
   LdsExpectations e(d);
@@ -305,7 +305,7 @@ Lds TrainLds::operator()(const Collected<Track>& tracks, Context& context) const
 }
 
 void describe(Description<TrainLds>& d) {
-  d.type("latent.lds").version(2).stored();
+  d.type("latent.lds").version(3).stored();
   d.summary("trains a linear dynamical system on tracks");
   d.source("Thesis §4.2.4, Eqns 4.13-4.19; expectation maximisation from PPCA");
   d.input("tracks", "every run of measured frames is a sequence").output("model", "the system's matrices");

@@ -70,9 +70,10 @@ struct TrainLds {
   double tolerance = 1e-5;
 
   Lds operator()(const Collected<Track>& tracks, Context& context) const;
-  /// By expectation maximisation. It starts from PPCA of the frames, each stacked with those before it if there are
-  /// more state than observed dimensions; `mean` is that of the frames and stays. Of one-frame sequences alone no
-  /// dynamics are learnt: A and ν are 0 and Σ is I.
+  /// By expectation maximisation. It starts from PPCA of the frames, each stacked with the one before it, or with more
+  /// if there are more state dimensions than two frames have: alone, standardised principal components are white, and
+  /// PPCA finds no direction in them. `mean` is that of the frames and stays. Of one-frame sequences alone no dynamics
+  /// are learnt: A and ν are 0 and Σ is I.
   Lds fit(const Sequences& data, Context& context, const LdsLimits& limits = {}) const;
 };
 void describe(Description<TrainLds>& d);

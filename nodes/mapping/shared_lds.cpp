@@ -25,7 +25,7 @@ SharedLds TrainSharedLds::operator()(const Collected<Track>& audio, const Collec
 }
 
 void describe(Description<TrainSharedLds>& d) {
-  d.type("mapping.shared_lds").version(1).stored();
+  d.type("mapping.shared_lds").version(2).stored();
   d.summary("learns one linear dynamical system behind sound and face");
   d.source("Thesis §4.3.3, Eqns 4.57-4.64; Lehn-Schiøler, Hansen and Larsen 2005");
   d.input("audio", "speech features at the video rate of the training sequences")

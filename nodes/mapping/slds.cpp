@@ -102,7 +102,7 @@ Slds TrainSlds::operator()(const Collected<Track>& audio, const Collected<Track>
 }
 
 void describe(Description<TrainSlds>& d) {
-  d.type("mapping.slds").version(1).stored();
+  d.type("mapping.slds").version(2).stored();
   d.summary("learns a switching linear dynamical system of the face, with phones as states");
   d.source("Thesis §5.1.1, Eqns 5.1-5.6; Ghahramani and Hinton 2000; Englebienne, Cootes and Rattray 2007");
   d.input("audio", "speech features at the video rate of the training sequences")

@@ -206,6 +206,25 @@ double log_likelihood(const Lds& model, const Sequences& data) {
   return sum;
 }
 
+// Standardised principal components: no direction has more variance than another.
+TEST(Lds, SeesMovementInWhiteComponents) {
+  Eigen::MatrixXd frames = gaussian(300, 4, 1);
+  for (Eigen::Index t = 0; t < 300; ++t) {
+    frames(t, 0) += 5 * std::sin(0.5 * static_cast<double>(t));
+    frames(t, 1) += 5 * std::cos(0.5 * static_cast<double>(t));
+  }
+  frames.rowwise() -= frames.colwise().mean().eval();
+  const Eigen::LLT<Eigen::MatrixXd> root(frames.transpose() * frames / 300);
+  frames = root.matrixL().solve(frames.transpose()).transpose().eval();
+  Context context;
+  TrainLds train;
+  train.latent_dimension = 2;
+  const Lds model = train.fit({frames, {300}}, context);
+  const std::complex<double> pole = model.prediction.eigenvalues()(0);
+  EXPECT_NEAR(std::abs(std::arg(pole)), 0.5, 0.01);
+  EXPECT_GT(std::abs(pole), 0.95);
+}
+
 TEST(Lds, RecoversTheSystemItsDataWereDrawnFrom) {
   const Lds model = truth();
   const Sequences data = sample(model, std::vector<std::int64_t>(40, 100), 1);
