@@ -85,7 +85,12 @@ void describe(Description<InspectContexts>& d) {
   d.type("context.inspect").summary("memories, labels and transitions of contexts as tables");
   d.source("Thesis §5.2.4, Figures 5.7 and 5.8");
   d.input("vlmm", "the contexts")
-      .output("summary", &InspectContexts::Out::summary, "how many, and how thinly occupied; one row")
+      .output("summary", &InspectContexts::Out::summary,
+              "one row; memories: how many; transitions: how many; labels: how many; trainable: labels that have a "
+              "state of "
+              "their own; thin: labels that at most `thin` frames carry; thin share: of all frames, those of thin "
+              "labels; median: "
+              "frames of a label")
       .output("memories", &InspectContexts::Out::memories, "length, training frames, what may follow")
       .output("labels", &InspectContexts::Out::labels, "training frames and windows, the most occupied first")
       .output("transitions", &InspectContexts::Out::transitions, "from and to which memory, how likely");

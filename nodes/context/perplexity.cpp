@@ -71,7 +71,12 @@ Table ContextPerplexity::operator()(const Vlmm& vlmm, const Collected<FrameLabel
 void describe(Description<ContextPerplexity>& d) {
   d.type("context.perplexity").version(3).summary("how well the contexts predict other phone streams");
   d.source("Thesis §5.2.2, Eqns 5.25 to 5.27");
-  d.input("vlmm", "the contexts").input("labels", "phones at the video rate").output("table", "one row");
+  d.input("vlmm", "the contexts").input("labels", "phones at the video rate");
+  d.output(
+      "table",
+      "one row; perplexity: 2 to the power of entropy; entropy: bits a symbol; best_path: entropy along the likeliest "
+      "path, bits a symbol; missed: share of symbols without a transition; symbols: frames, or runs of a phone; "
+      "memories: those kept; trainable: labels that have a state of their own");
   d.param("floor", &ContextPerplexity::floor).within(1e-12, 1).doc("least probability of a phone");
 }
 

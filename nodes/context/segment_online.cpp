@@ -85,7 +85,7 @@ void describe(Description<ContextSegmentOnline>& d) {
   d.input("vlmm", "the contexts").input("contexts", "context of each frame");
   d.output("segments", &ContextSegmentOnline::Out::segments, "they cover every frame");
   d.output("latency", &ContextSegmentOnline::Out::latency,
-           "latency: how long frames wait for their segment to be cut, mean, and latency_most, ms");
+           "latency: how long frames wait for their segment to be cut, mean, ms; latency_most: the longest, ms");
   d.param("states", &ContextSegmentOnline::states).doc("what a state stands for; as in context.windows");
   d.param("lookahead", &ContextSegmentOnline::lookahead)
       .at_least(0)

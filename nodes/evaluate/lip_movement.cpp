@@ -117,7 +117,13 @@ void describe(Description<LipMovement>& d) {
   d.input("truth", "landmarks of the recorded face, free of head pose")
       .input("predicted", "of the synthesised face, in the same frame of reference")
       .input("speech", "frames that count")
-      .output("scores", "lmd, lmvd, lve, ddtw, gap_range; silent: movement in the other frames");
+      .output("scores",
+              "lmd: distance of lip points from the true ones, mean over points and frames, px (or `unit`); lmvd: "
+              "distance of the velocities of lip points from the true ones, px a frame (or `unit`); lve: largest "
+              "distance of a lip point in a frame, mean over frames, px (or `unit`); ddtw: distance of the slopes of "
+              "the gap between the lips from the true ones, warped in time, px a frame (or `unit`); gap_range: "
+              "standard deviation of the gap between the lips / the true one's, 1 at best; silent: movement of the "
+              "lips in frames without speech, px a frame (or `unit`)");
   d.param("points", &LipMovement::points).doc("groups or points of the scheme that are the lips");
   d.param("unit", &LipMovement::unit)
       .doc("two points whose mean distance in the truth is the unit of length; empty: pixels of the landmarks");

@@ -61,7 +61,9 @@ void describe(Description<ScoreLipReading>& d) {
   d.input("reader", "of evaluate.lip_reader, trained on recorded faces")
       .input("track", "visual features as it was trained on, recorded or synthesised")
       .input("labels", "phone of every frame, as said")
-      .output("scores", "x_correct, x_accuracy: shares of the units said; x is the name");
+      .output("scores",
+              "x_correct: units of speech that are read right off the lips, share of those said; x_accuracy: units "
+              "read right less those read that were not said, share of those said; x is the name");
   d.param("name", &ScoreLipReading::name).doc("of the units, in the names of the scores");
   d.param("insertion", &ScoreLipReading::insertion)
       .within(-1000, 1000)

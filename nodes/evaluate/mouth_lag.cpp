@@ -28,7 +28,8 @@ void describe(Description<MouthLag>& d) {
   d.input("landmarks", "of the face, recorded or synthesised")
       .input("audio", "the speech")
       .output("scores",
-              "lag (frames; above 0: the mouth is late), correlation at that lag, in_time (correlation without a lag)");
+              "lag: shift at which mouth and sound correlate most, frames, above 0 if the mouth is late; correlation: "
+              "that of mouth and sound at this shift; in_time: correlation of mouth and sound without a shift");
   d.param("max_lag", &MouthLag::max_lag).within(0, 100).unit("frames").doc("longest shift tried");
   d.param("upper", &MouthLag::upper).doc("point in the middle of the inner upper lip, by its name in the point scheme");
   d.param("lower", &MouthLag::lower).doc("point in the middle of the inner lower lip");

@@ -58,7 +58,10 @@ void describe(Description<MouthOpening>& d) {
       .summary("how far the lips part on closed phones, open phones and in pauses");
   d.input("landmarks", "of the face, recorded or synthesised")
       .input("labels", "phone of every frame")
-      .output("scores", "closed, open, pause: gap between the lips as a share of the mouth's width");
+      .output("scores",
+              "closed: least gap between the lips in phones that close them, widths of the mouth; open: largest gap "
+              "between the lips in open vowels, widths of the mouth; pause: mean gap between the lips in pauses, "
+              "widths of the mouth");
   d.param("closed", &MouthOpening::closed).doc("phones on which the lips meet");
   d.param("open", &MouthOpening::open).doc("phones on which the mouth opens");
   d.param("upper", &MouthOpening::upper)

@@ -212,7 +212,12 @@ void describe(Description<ComparePictures>& d) {
   d.input("recorded", "the clip")
       .input("drawn", "the same with a face drawn on it")
       .input("landmarks", "of the recorded face; frames without do not count")
-      .output("scores", "psnr_face, psnr_mouth, ssim_face, ssim_mouth, sharpness, jumps, seam, left_out");
+      .output("scores",
+              "psnr_face: peak signal to noise ratio of the drawn face, dB; psnr_mouth: peak signal to noise ratio of "
+              "the drawn mouth, dB; ssim_face: structural similarity of the drawn face, 1 at best; ssim_mouth: "
+              "structural similarity of the drawn mouth, 1 at best; sharpness: gradient of the grey levels between "
+              "parted lips, drawn / recorded; jumps: change of the mouth from frame to frame, drawn / recorded; seam: "
+              "step across the face's edge, drawn / recorded; left_out: frames that do not count");
   d.param("mouth", &ComparePictures::mouth)
       .at_least(0)
       .doc("landmarks around the lips; empty: outer lips of the point scheme");

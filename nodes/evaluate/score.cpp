@@ -72,7 +72,12 @@ void describe(Description<Score>& d) {
   d.input("truth", "normalised")
       .input("predicted", "normalised")
       .input("speech", "frames that count")
-      .output("scores", "amse, amse_share, acc, l1, l2, linf, range");
+      .output("scores",
+              "acc: correlation with the recorded parameters over frames, mean over dimensions, 1 at best; amse: "
+              "squared error, mean over frames and dimensions; amse_share: amse / that of predicting the mean, 0 at "
+              "best; l1: absolute error, mean over frames and dimensions; l2: root of amse; linf: largest absolute "
+              "error of a frame, mean over frames; range: standard deviation of the first dimension / the recorded "
+              "one's, 1 at best, less if the face moves too little");
 }
 
 }  // namespace talkgraph

@@ -60,7 +60,7 @@ void describe(Description<LogLikelihood>& d) {
   d.summary("how likely a track is under principal components, a mixture, a hidden Markov model or a linear system");
   d.source("the model's density, a frame");
   d.input("model", "of type Ppca, Gmm, Hmm or Lds").input("track", "of the features that the model was trained on");
-  d.output("scores", "log_likelihood, natural logarithm a measured frame");
+  d.output("scores", "log_likelihood: natural logarithm a measured frame");
 }
 
 }  // namespace talkgraph

@@ -259,13 +259,15 @@ void describe(Description<CompareMethods>& d) {
       .summary("one table of all methods: means, spread, confidence intervals, significance");
   d.source("Student 1908; Efron 1979; Wilcoxon 1945; Holm 1979; Benjamini & Hochberg 1995");
   d.input("sequences", "an object of named tables of evaluate.sequences, one a method");
-  d.output("table", &CompareMethods::Out::table, "a row a method; of each score x: x, x std, x low, x high, x p");
+  d.output("table", &CompareMethods::Out::table,
+           "a row a method; of each score x: x, x std, x low, x high, x p; sequences: how many the method has");
   d.output("pairs", &CompareMethods::Out::pairs, "a row a pair of methods; of each score x: x, x p, x effect");
   d.output("sequences", &CompareMethods::Out::sequences,
            "a row a sequence; of each score x to rank by: x, the best of all methods, and x: METHOD, the best first");
-  d.output("best", &CompareMethods::Out::best,
-           "a row a method, from the best by the first score to rank by; of each such score x: x behind the best "
-           "method's, x behind p, x won: sequences");
+  d.output(
+      "best", &CompareMethods::Out::best,
+      "a row a method, from the best by the first score to rank by; of each such score x: x behind, x behind p, x won; "
+      "x behind: how far the mean is behind the best method's; x won: sequences in which no other method is better");
   d.param("scores", &CompareMethods::scores).doc("which, in the order of the columns; empty: all");
   d.param("against", &CompareMethods::against)
       .doc("method that each other is tested against by Wilcoxon's signed-rank test over sequences; empty: none");
