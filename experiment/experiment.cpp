@@ -24,8 +24,8 @@ const std::vector<std::string> file_keys = {"$schema", "description", "graph",  
                                             "repeats", "seeds",       "tabulate", "plot", "show"};
 
 /// Columns of the results, which no factor can be called.
-const std::set<std::string> result_columns = {"trial", "seed", "status",  "output", "item", "row",  "measure", "value",
-                                              "n",     "over", "partial", "mean",   "low",  "high", "p"};
+const std::set<std::string> result_columns = {"trial", "seed", "status",  "output", "item", "row", "measure", "value",
+                                              "n",     "over", "partial", "mean",   "std",  "low", "high",    "p"};
 
 /// A parameter of the graph by its whole path, so that it is the same however it is named.
 std::string whole_path(const std::string& path) {

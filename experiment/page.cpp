@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -125,38 +126,71 @@ BarPanel bar_panel(const Experiment& experiment, const OutputEstimates& estimate
 }
 
 std::string number_text(const Estimate& e) {
-  const bool of_table = e.over == Estimate::Over::table;
-  const std::string text = of_table || std::isnan(e.low)
-                               ? fmt::format("{:.4g}", shown_number(e.mean))
-                               : fmt::format("{:.3g} ± {:.2g}", shown_number(e.mean), shown_number(half_width(e)));
-  return text + (e.partial ? " *" : "") + html_below(of_table ? e.low : NAN, of_table ? e.high : NAN, e.p);
+  return html_number({e.mean, e.deviation, e.low, e.high, e.p}, e.partial ? " *" : "");
 }
 
-std::string score_table(const Experiment& experiment, const OutputEstimates& estimates) {
-  std::vector<std::string> head;
-  const bool rows =
-      std::any_of(estimates.all.begin(), estimates.all.end(), [](const auto* e) { return !e->row.empty(); });
-  if (rows) head.emplace_back("row");
-  head.insert(head.end(), experiment.factors.begin(), experiment.factors.end());
-  head.insert(head.end(), estimates.measures.begin(), estimates.measures.end());
-  std::vector<std::pair<std::size_t, std::string>> names;
-  std::map<std::tuple<std::size_t, std::string, std::string>, const Estimate*> cells;
+/// "phones: transcript, features: MFCC".
+std::string levels_text(const Experiment& experiment, std::size_t setting) {
+  std::vector<std::string> parts;
+  const auto& levels = first_of(experiment, setting).levels;
+  for (std::size_t f = 0; f < levels.size(); ++f) parts.push_back(experiment.factors[f] + ": " + text_of(levels[f]));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// The name of a measure, which says what it is where that is known.
+std::string measure_head(const std::string& measure, const std::vector<Meaning>& meanings) {
+  const auto known =
+      std::find_if(meanings.begin(), meanings.end(), [&](const auto& m) { return m.measure == measure; });
+  if (known == meanings.end()) return escape_markup(measure);
+  return fmt::format("<abbr title=\"{}\">{}</abbr>", escape_markup(known->text), escape_markup(measure));
+}
+
+/// The cells of one setting and row.
+std::vector<std::string> score_cells(const OutputEstimates& estimates, std::size_t setting, const std::string& row) {
+  std::vector<std::string> cells;
+  for (const auto& measure : estimates.measures) {
+    const auto it = std::find_if(estimates.all.begin(), estimates.all.end(), [&](const auto* e) {
+      return e->setting == setting && e->row == row && e->measure == measure;
+    });
+    cells.push_back(number_cell(it == estimates.all.end() ? "–" : number_text(**it)));
+  }
+  return cells;
+}
+
+/// Where settings have several rows each, these stand below their levels; else levels are columns.
+std::string score_table(const Experiment& experiment, const OutputEstimates& estimates,
+                        const std::vector<Meaning>& meanings) {
+  std::vector<std::pair<std::size_t, std::string>> names;  // setting, row
+  std::set<std::size_t> settings;
   for (const auto* e : estimates.all) {
     add_once(names, {e->setting, e->row});
-    cells[{e->setting, e->row, e->measure}] = e;
+    settings.insert(e->setting);
   }
+  const auto any = [&](auto is) { return std::any_of(estimates.all.begin(), estimates.all.end(), is); };
+  const bool rows = any([](const auto* e) { return !e->row.empty(); });
+  const bool apart = names.size() > settings.size() && !experiment.factors.empty();
+
+  std::vector<std::string> head;
+  if (rows) head.emplace_back("row");
+  if (!apart)
+    std::transform(experiment.factors.begin(), experiment.factors.end(), std::back_inserter(head), escape_markup);
+  for (const auto& measure : estimates.measures) head.push_back(measure_head(measure, meanings));
   std::vector<std::vector<std::string>> lines;
+  std::optional<std::size_t> above;
   for (const auto& [setting, row] : names) {
+    if (apart && setting != above)
+      lines.push_back({heading_cell(escape_markup(levels_text(experiment, setting)), head.size())});
+    above = setting;
     auto& line = lines.emplace_back();
     if (rows) line.push_back(text_cell(escape_markup(row)));
-    for (const auto& level : first_of(experiment, setting).levels)
-      line.push_back(text_cell(escape_markup(text_of(level))));
-    for (const auto& measure : estimates.measures) {
-      const auto it = cells.find({setting, row, measure});
-      line.push_back(number_cell(it == cells.end() ? "–" : number_text(*it->second)));
-    }
+    if (!apart)
+      for (const auto& level : first_of(experiment, setting).levels)
+        line.push_back(text_cell(escape_markup(text_of(level))));
+    const auto cells = score_cells(estimates, setting, row);
+    line.insert(line.end(), cells.begin(), cells.end());
   }
-  return html_table(estimates.output, head, lines);
+  return html_table(title_with_key(estimates.output, any([](const auto* e) { return is_significant(e->p); })), head,
+                    lines);
 }
 
 /// Says what the numbers behind ± and below the others are.
@@ -175,8 +209,14 @@ std::string interval_note(const std::vector<Estimate>& estimates) {
   if (repeats > 1) over = fmt::format("{} repeats with seeds of their own", repeats);
   if (items > 1) over += fmt::format("{}{} items of one run", over.empty() ? "" : " or ", items);
   if (!over.empty())
-    note = fmt::format("Means over {}; after ± half the width of the 95 % confidence interval (Student's t). ", over);
-  if (of_tables) note += "Below a number stand the confidence interval and the p that the table of its run gives.";
+    note = fmt::format(
+        "Means over {}, after ± the standard deviation, below it the 95 % confidence interval of the mean (Student's "
+        "t). ",
+        over);
+  if (of_tables)
+    note +=
+        "Of a table: after ± the standard deviation; below it, where the table gives them, the confidence interval of "
+        "the mean, and p.";
   if (behind)
     note +=
         " Behind is behind the method of the best mean, with p of Wilcoxon's signed-rank test of the two, sequence by "
@@ -322,15 +362,23 @@ std::vector<std::string> missing_measures(const Experiment& experiment, const st
   return missing;
 }
 
-std::string html_results(const Experiment& experiment, const std::vector<TrialResult>& results,
-                         const std::string& folder) {
+std::vector<Meaning> meanings(const Experiment& experiment, const std::vector<Graph>& graphs,
+                              const std::vector<TrialResult>& results) {
+  std::vector<std::string> measures;
+  for (const auto& e : estimate(experiment, results)) add_once(measures, e.measure);
+  return meanings_of(measures, graphs);
+}
+
+std::string html_results(const Experiment& experiment, const std::vector<Graph>& graphs,
+                         const std::vector<TrialResult>& results, const std::string& folder) {
   const auto estimates = estimate(experiment, results);
   std::string html = settings(experiment);
   if (!estimates.empty()) html += "<p>" + interval_note(estimates) + "</p>\n";
   if (std::any_of(estimates.begin(), estimates.end(), [](const Estimate& e) { return e.partial; }))
     html += "<p>* Without items that failed: see the runs.</p>\n";
   for (const auto& missing : missing_measures(experiment, estimates)) html += "<p>" + escape_markup(missing) + "</p>\n";
-  for (const auto& of_output : by_output(estimates)) html += score_table(experiment, of_output);
+  for (const auto& of_output : by_output(estimates))
+    html += score_table(experiment, of_output, meanings_of(of_output.measures, graphs));
   for (const auto& plot : plot_estimates(experiment, estimates)) html += html_plot(plot);
   return html + clips(experiment, results, folder);
 }
@@ -344,8 +392,9 @@ std::string experiment_page(const Experiment& experiment, const std::vector<Grap
       "<p>{} of {} runs finished, of <code>{}</code>. All numbers: <a href=\"results.csv\">results.csv</a>, "
       "<a href=\"results.json\">results.json</a>; means: <a href=\"means.csv\">means.csv</a>.</p>\n",
       finished, results.size(), escape_markup(experiment.graph.filename().string()));
-  const std::string of_trials = html_results(experiment, results, "");
-  if (!of_trials.empty()) page += "<h2>Results</h2>\n" + of_trials;
+  const std::string of_trials = html_results(experiment, graphs, results, "");
+  if (!of_trials.empty())
+    page += "<h2>Results</h2>\n" + of_trials + html_meanings(meanings(experiment, graphs, results));
   return page + trial_table(experiment, graphs, results) + html_close();
 }
 

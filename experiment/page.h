@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "experiment/meanings.h"
 #include "experiment/results.h"
 #include "nodes/types/report.h"
 
@@ -15,10 +16,14 @@ std::vector<Plot> plot_estimates(const Experiment& experiment, const std::vector
 /// Complaints about measures that are to be plotted and that no output has.
 std::vector<std::string> missing_measures(const Experiment& experiment, const std::vector<Estimate>& estimates);
 
+/// What the measures of an experiment are, as far as its graphs say.
+std::vector<Meaning> meanings(const Experiment& experiment, const std::vector<Graph>& graphs,
+                              const std::vector<TrialResult>& results);
+
 /// Scores, plots and clips beside each other, part of a page from which the experiment's files are seen in `folder`
 /// ("table-6-1/"; empty: beside the page).
-std::string html_results(const Experiment& experiment, const std::vector<TrialResult>& results,
-                         const std::string& folder);
+std::string html_results(const Experiment& experiment, const std::vector<Graph>& graphs,
+                         const std::vector<TrialResult>& results, const std::string& folder);
 
 /// The page that compares the trials: scores, plots, clips beside each other, what differed, how each trial went.
 std::string experiment_page(const Experiment& experiment, const std::vector<Graph>& graphs,
@@ -30,7 +35,7 @@ void claim_folder(const std::filesystem::path& folder, const std::filesystem::pa
 
 /// Writes to the experiment's folder, each file whole or not at all:
 ///   results.csv, results.json  one line a number
-///   means.csv                  means with 95 % confidence intervals
+///   means.csv                  means with deviations and 95 % confidence intervals
 ///   plots/OUTPUT.svg
 ///   experiment.html            the page
 void write_results(const Experiment& experiment, const std::vector<Graph>& graphs,

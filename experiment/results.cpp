@@ -43,6 +43,7 @@ Estimate estimate_of(const Sample& sample) {
   const auto& values = out.over == Estimate::Over::items ? sample[0] : means;
   out.n = values.size();
   out.mean = mean_of(values);
+  out.deviation = deviation_of(values);
   const auto interval = student_interval(values, 0.95);
   out.low = interval.low, out.high = interval.high;
   return out;
@@ -102,8 +103,8 @@ void take_from_table(Estimate& e, const std::map<Name, Sample>& samples) {
     const auto it = samples.find({e.setting, e.output, e.row, e.measure + what});
     return it == samples.end() ? NAN : it->second[0][0];
   };
-  e.low = beside(" low"), e.high = beside(" high"), e.p = beside(" p");
-  if (!std::isnan(e.low)) e.over = Estimate::Over::table;
+  e.deviation = beside(" std"), e.low = beside(" low"), e.high = beside(" high"), e.p = beside(" p");
+  if (!std::isnan(e.deviation) || !std::isnan(e.low)) e.over = Estimate::Over::table;
 }
 
 std::string csv_cell(const Json& cell) { return csv_text(cell.is_string() ? cell.get<std::string>() : cell.dump()); }
@@ -199,7 +200,7 @@ Json tidy_json(const Experiment& experiment, const std::vector<TrialResult>& res
 std::string estimates_csv(const Experiment& experiment, const std::vector<Estimate>& estimates) {
   std::vector<std::string> head;
   for (const auto& factor : experiment.factors) head.push_back(csv_text(factor));
-  for (const char* more : {"output", "row", "measure", "n", "over", "partial", "mean", "low", "high", "p"})
+  for (const char* more : {"output", "row", "measure", "n", "over", "partial", "mean", "std", "low", "high", "p"})
     head.emplace_back(more);
   std::string out = csv_line(head);
   std::vector<const Trial*> of_setting(experiment.settings);
@@ -211,7 +212,8 @@ std::string estimates_csv(const Experiment& experiment, const std::vector<Estima
     line.push_back(fmt::format("{}", e.n));
     line.emplace_back(over_text(e.over));
     line.emplace_back(e.partial ? "yes" : "no");
-    for (const double v : {e.mean, e.low, e.high, e.p}) line.push_back(std::isnan(v) ? "" : fmt::format("{}", v));
+    for (const double v : {e.mean, e.deviation, e.low, e.high, e.p})
+      line.push_back(std::isnan(v) ? "" : fmt::format("{}", v));
     out += csv_line(line);
   }
   return out;

@@ -44,17 +44,18 @@ std::vector<Observation> observe(const Experiment& experiment, const RunResult& 
 /// The clips and pictures of the outputs that are to be shown.
 std::vector<Shown> pick_shown(const Experiment& experiment, const RunResult& run);
 
-/// A mean over repeats, with its 95 % confidence interval by Student's t; where there is one trial only, over the items
-/// of a stream. A single number of a table has the interval and the p that the table has of it ("acc low", "acc high",
-/// "acc p").
+/// A mean over repeats, with its standard deviation and its 95 % confidence interval by Student's t; where there is one
+/// trial only, over the items of a stream. A single number of a table has those and the p that the table has of it
+/// ("acc std", "acc low", "acc high", "acc p").
 struct Estimate {
   enum class Over { repeats, items, table };
   std::size_t setting = 0;
   std::string output, row, measure;
   std::size_t n = 0;          ///< numbers that the mean is of
-  Over over = Over::repeats;  ///< what the interval is over
+  Over over = Over::repeats;  ///< what deviation and interval are over
   bool partial = false;       ///< some items of the trials failed
   double mean = 0;
+  double deviation = NAN;        ///< NaN where there is none
   double low = NAN, high = NAN;  ///< ends of the interval; NaN where there is none
   double p = NAN;                ///< of a test; NaN where there is none
 };
@@ -66,7 +67,7 @@ std::vector<Estimate> estimate(const Experiment& experiment, const std::vector<T
 /// One line a number: trial, factors, seed, status, output, item, row, measure, value.
 std::string tidy_csv(const Experiment& experiment, const std::vector<TrialResult>& results);
 Json tidy_json(const Experiment& experiment, const std::vector<TrialResult>& results);
-/// One line an estimate: factors, output, row, measure, n, over, partial, mean, low, high, p.
+/// One line an estimate: factors, output, row, measure, n, over, partial, mean, std, low, high, p.
 std::string estimates_csv(const Experiment& experiment, const std::vector<Estimate>& estimates);
 
 }  // namespace talkgraph

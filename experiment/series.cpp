@@ -148,11 +148,56 @@ std::string table_of(const ExperimentSeries::Words& words) {
   return out + "</tbody>\n</table></div>\n";
 }
 
+constexpr const char* not_run = "not run";
+
+/// "finished", "not run", "1 of 3 runs finished, 1 failed".
 std::string state_of(const ExperimentSeries::Part& part) {
-  const auto ended = std::count_if(part.results.begin(), part.results.end(),
-                                   [](const TrialResult& r) { return r.status == TrialResult::Status::finished; });
-  const auto all = part.experiment.trials.size();
-  return static_cast<std::size_t>(ended) == all ? "" : fmt::format("{} of {} runs finished so far. ", ended, all);
+  const auto count = [&](TrialResult::Status status) {
+    return static_cast<std::size_t>(std::count_if(part.results.begin(), part.results.end(),
+                                                  [&](const TrialResult& r) { return r.status == status; }));
+  };
+  const auto all = part.experiment.trials.size(), finished = count(TrialResult::Status::finished),
+             failed = count(TrialResult::Status::failed);
+  if (finished == all) return "finished";
+  if (finished + failed + count(TrialResult::Status::stopped) == 0) return not_run;
+  return fmt::format("{} of {} runs finished{}", finished, all, failed == 0 ? "" : fmt::format(", {} failed", failed));
+}
+
+std::string anchor_of(const ExperimentSeries::Part& part) { return "experiment-" + url_of(part.experiment.name); }
+
+/// Links to sections and experiments, with how far these are.
+std::string contents(const ExperimentSeries& series) {
+  std::string out = "<nav>\n<h2>Contents</h2>\n<ol>\n";
+  for (std::size_t s = 0; s < series.sections.size(); ++s) {
+    const auto& section = series.sections[s];
+    out += fmt::format("<li><a href=\"#section-{}\">{}</a>\n<ul>\n", s + 1, escape_markup(section.title));
+    for (const auto& part : section.parts)
+      out += fmt::format("<li><a href=\"#{}\">{}</a>: {}</li>\n", anchor_of(part), escape_markup(part.experiment.name),
+                         state_of(part));
+    out += "</ul></li>\n";
+  }
+  return out + "</ol>\n</nav>\n";
+}
+
+/// What the measures of all experiments are, each once.
+std::vector<Meaning> meanings_of(const ExperimentSeries& series) {
+  std::vector<Meaning> all;
+  for (const auto& section : series.sections)
+    for (const auto& part : section.parts)
+      for (const auto& meaning : meanings(part.experiment, part.graphs, part.results))
+        if (std::find(all.begin(), all.end(), meaning) == all.end()) all.push_back(meaning);
+  return all;
+}
+
+std::string html_part(const ExperimentSeries::Part& part) {
+  const auto& [experiment, graphs, results] = part;
+  const std::string state = state_of(part);
+  return fmt::format("<h3 id=\"{}\">{}</h3>\n{}", anchor_of(part), escape_markup(experiment.name),
+                     paragraphs(experiment.description)) +
+         (state == not_run ? "<p>It has not been run.</p>\n"
+                           : fmt::format("<p><a href=\"{}/experiment.html\">Its own page</a> has every run: {}.</p>\n",
+                                         url_of(experiment.name), state)) +
+         html_results(experiment, graphs, results, experiment.name + "/");
 }
 
 }  // namespace
@@ -175,17 +220,13 @@ std::optional<ExperimentSeries> load_series(const std::filesystem::path& file, c
 }
 
 std::string series_page(const ExperimentSeries& series) {
-  std::string page = html_open(series.name, series.description);
-  for (const auto& section : series.sections) {
-    page += fmt::format("<h2>{}</h2>\n{}", escape_markup(section.title), paragraphs(section.text));
-    page += table_of(section.words);
-    for (const auto& part : section.parts) {
-      const std::string name = escape_markup(part.experiment.name);
-      page +=
-          fmt::format("<h3>{0}</h3>\n{1}<p>{2}<a href=\"{0}/experiment.html\">Its own page</a> has every run.</p>\n",
-                      name, paragraphs(part.experiment.description), state_of(part));
-      page += html_results(part.experiment, part.results, part.experiment.name + "/");
-    }
+  std::string page = html_open(series.name, series.description) + contents(series) + html_meanings(meanings_of(series));
+  for (std::size_t s = 0; s < series.sections.size(); ++s) {
+    const auto& section = series.sections[s];
+    page += fmt::format("<h2 id=\"section-{}\">{}</h2>\n{}", s + 1, escape_markup(section.title),
+                        paragraphs(section.text)) +
+            table_of(section.words);
+    for (const auto& part : section.parts) page += html_part(part);
   }
   return page + html_close();
 }

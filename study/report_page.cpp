@@ -156,7 +156,8 @@ std::vector<std::string> comparison_line(const Findings& findings, const Compari
 std::string comparison_table(const Findings& findings, const std::vector<Comparison>& comparisons) {
   const Comparison& any = comparisons.front();
   const Measure& of = findings.measures[any.measure];
-  std::vector<std::string> head = {"clips", any.first_name, any.second_name, of.is_share() ? "points" : "difference"};
+  std::vector<std::string> head = {"clips", escape_markup(any.first_name), escape_markup(any.second_name),
+                                   of.is_share() ? "points" : "difference"};
   if (of.is_share()) head.emplace_back("h");
   head.insert(head.end(), {"r", "p", "p-value", "corrected", "paired"});
   const bool several = comparisons.back().measure != any.measure;
@@ -190,13 +191,14 @@ std::string confusion_table(const Table& table) {
                              : fmt::format("{:.1f} %<br><small>{:.1f} to {:.1f} %, of {:.0f} answers</small>",
                                            100 * cells[at], 100 * cells[at + 1], 100 * cells[at + 2], cells[at + 3])));
   }
-  return html_table(table.title, {table.corner, "synthetic taken for real", "real taken for synthetic"}, lines);
+  return html_table(table.title, {escape_markup(table.corner), "synthetic taken for real", "real taken for synthetic"},
+                    lines);
 }
 
 /// Numbers of people with their share of all.
 std::string people_table(const Table& table, std::size_t people) {
-  std::vector<std::string> head = {table.corner};
-  head.insert(head.end(), table.columns.begin(), table.columns.end());
+  std::vector<std::string> head = {escape_markup(table.corner)};
+  for (const auto& column : table.columns) head.push_back(escape_markup(column));
   std::vector<std::vector<std::string>> lines;
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     auto& line = lines.emplace_back(1, text_cell(escape_markup(table.rows[r])));

@@ -30,9 +30,16 @@ td.best { font-weight: 700; background: #fdeee0; }
 .text, tbody th { text-align: left; white-space: normal; }
 tbody th { font-weight: normal; }
 tr { background: #fff; }
-tbody th.rows { font-weight: 600; padding-top: .8rem; }
+tbody th.rows { font-weight: 600; padding-top: .8rem; background: #eee; }
+tbody th.rows > span { position: sticky; left: .7rem; }
+abbr { text-decoration: none; border-bottom: 1px dotted; cursor: help; }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: .2rem 1rem; }
+dt { font-weight: 600; }
+dd { margin: 0; }
+nav ul { columns: 24rem; }
 tbody tr:hover { background: #f4f4f4; }
 tr > :first-child { position: sticky; left: 0; background: inherit; min-width: 12rem; }
+tr > :first-child::after { content: ""; position: absolute; inset: 0 0 0 auto; border-right: 1px solid #ddd; }
 svg { max-width: 100%; height: auto; }
 .clips { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(24rem, 100%), 1fr)); gap: 1rem; }
 figure { margin: 0 0 1.5rem; }
@@ -45,8 +52,6 @@ figcaption { color: #444; }
 )";
 
 constexpr std::size_t kMostColumns = 20;  ///< of a table that is not folded
-
-std::string number(double v) { return fmt::format("{:.4g}", v); }
 
 /// The column `name`, or -1.
 std::ptrdiff_t column_of(const Table& table, const std::string& name) {
@@ -68,29 +73,23 @@ bool is_the_best(const Table& table, std::size_t row, std::size_t c) {
 }
 
 std::string cell(const Table& table, std::size_t row, std::size_t c) {
-  const double value = shown_number(table.cells[row][c]);
-  if (std::isnan(value)) return "<td>–</td>";
+  const double mean = table.cells[row][c];
+  if (std::isnan(mean)) return "<td>–</td>";
   const auto beside = [&](const char* what) {
     const auto column = column_of(table, table.columns[c] + what);
     return column < 0 ? NAN : table.cells[row][static_cast<std::size_t>(column)];
   };
-  const double spread = shown_number(beside(" std"));
   return (is_the_best(table, row, c) ? "<td class=\"best\">" : "<td>") +
-         (std::isnan(spread) ? number(value) : fmt::format("{:.3g} ± {:.2g}", value, spread)) +
-         html_below(beside(" low"), beside(" high"), beside(" p")) + "</td>";
+         html_number({mean, beside(" std"), beside(" low"), beside(" high"), beside(" p")}) + "</td>";
 }
 
-/// A relative path as a URL: what is no letter, digit or one of "-._~/" is written as %XX.
-std::string url(const std::string& path) {
-  std::string out;
-  for (const char c : path) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 128 && (std::isalnum(byte) || std::string_view("-._~/").find(c) != std::string_view::npos))
-      out += c;
-    else
-      out += fmt::format("%{:02X}", byte);
-  }
-  return out;
+bool has_significant(const Table& table) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (table.columns[c].ends_with(" p") && is_beside_another(table, c) &&
+        std::any_of(table.cells.begin(), table.cells.end(),
+                    [&](const auto& cells) { return is_significant(cells[c]); }))
+      return true;
+  return false;
 }
 
 bool is_video(const std::string& path) {
@@ -101,6 +100,18 @@ bool is_video(const std::string& path) {
 
 bool is_picture(const std::string& path) {
   return path.ends_with(".png") || path.ends_with(".jpg") || path.ends_with(".svg");
+}
+
+std::string url_of(const std::string& path) {
+  std::string out;
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 128 && (std::isalnum(byte) || std::string_view("-._~/").find(c) != std::string_view::npos))
+      out += c;
+    else
+      out += fmt::format("%{:02X}", byte);
+  }
+  return out;
 }
 
 std::string html_open(const std::string& title, const std::string& notes) {
@@ -121,12 +132,22 @@ std::string score_beside(const std::string& column) {
   return "";
 }
 
-std::string html_below(double low, double high, double p) {
-  std::string out;
+bool is_significant(double p) { return p < 0.05; }
+
+std::string html_number(const Measured& measured, const std::string& mark) {
+  const auto& [mean, deviation, low, high, p] = measured;
+  std::string out = std::isnan(deviation) ? fmt::format("{:.4g}", shown_number(mean))
+                                          : fmt::format("{:.3g} ± {:.2g}", shown_number(mean), shown_number(deviation));
+  out += mark;
+  if (is_significant(p)) out = "<strong>" + out + "</strong>";
   if (!std::isnan(low))
     out += fmt::format("<br><small>{:.3g} to {:.3g}</small>", shown_number(low), shown_number(high));
   if (!std::isnan(p)) out += fmt::format("<br><small>p = {:.2g}</small>", p);
   return out;
+}
+
+std::string title_with_key(const std::string& title, bool significant) {
+  return significant ? title + " (bold: p below 0.05)" : title;
 }
 
 std::string html_table(const std::string& name, const Table& table) {
@@ -134,7 +155,8 @@ std::string html_table(const std::string& name, const Table& table) {
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if (!is_beside_another(table, c)) shown.push_back(c);
   const bool folded = shown.size() > kMostColumns;
-  const std::string title = escape_markup(table.title.empty() ? name : table.title);
+  const std::string title =
+      escape_markup(title_with_key(table.title.empty() ? name : table.title, has_significant(table)));
   std::string out = folded ? "<details><summary>" + title + "</summary>\n" : "";
   out += fmt::format("<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr><th scope=\"col\">{}</th>", title,
                      escape_markup(table.corner));
@@ -149,7 +171,7 @@ std::string html_table(const std::string& name, const Table& table) {
 }
 
 std::string heading_cell(const std::string& html, std::size_t columns) {
-  return fmt::format("<th scope=\"rowgroup\" colspan=\"{}\" class=\"rows\">{}</th>", columns, html);
+  return fmt::format("<th scope=\"rowgroup\" colspan=\"{}\" class=\"rows\"><span>{}</span></th>", columns, html);
 }
 std::string number_cell(const std::string& html) { return "<td>" + html + "</td>"; }
 std::string text_cell(const std::string& html) { return "<td class=\"text\">" + html + "</td>"; }
@@ -162,7 +184,7 @@ std::string html_table(const std::string& caption, const std::vector<std::string
     const bool text = std::any_of(lines.begin(), lines.end(), [&](const auto& line) {
       return line.size() == head.size() && line[c].starts_with("<td class");
     });
-    out += fmt::format("<th scope=\"col\"{}>{}</th>", text ? " class=\"text\"" : "", escape_markup(head[c]));
+    out += fmt::format("<th scope=\"col\"{}>{}</th>", text ? " class=\"text\"" : "", head[c]);
   }
   out += "</tr></thead>\n<tbody>\n";
   for (const auto& line : lines) out += fmt::format("<tr>{}</tr>\n", fmt::join(line, ""));
@@ -177,11 +199,11 @@ std::string html_plot(const Plot& plot) {
 std::string html_clip(const std::string& name, const Artifact& clip) {
   const std::string label = escape_markup(name);
   const std::string shown =
-      is_picture(clip.path) ? fmt::format("<img src=\"{}\" alt=\"{}\">", url(clip.path), label)
+      is_picture(clip.path) ? fmt::format("<img src=\"{}\" alt=\"{}\">", url_of(clip.path), label)
       : is_video(clip.path)
-          ? fmt::format("<video controls preload=\"metadata\" aria-label=\"{1}\" src=\"{0}\"></video>", url(clip.path),
-                        label)
-          : fmt::format("<a href=\"{}\">{}</a>", url(clip.path), escape_markup(clip.path));
+          ? fmt::format("<video controls preload=\"metadata\" aria-label=\"{1}\" src=\"{0}\"></video>",
+                        url_of(clip.path), label)
+          : fmt::format("<a href=\"{}\">{}</a>", url_of(clip.path), escape_markup(clip.path));
   return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", shown, label);
 }
 

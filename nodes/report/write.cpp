@@ -40,7 +40,7 @@ Artifact WriteReport::operator()(const Collected<Table>& tables, const Collected
 }
 
 void describe(Description<WriteReport>& d) {
-  d.type("report.write").version(5).summary("writes the report page, the plots and metrics.json").sink();
+  d.type("report.write").version(6).summary("writes the report page, the plots and metrics.json").sink();
   d.input("tables", "an object of named tables")
       .input("plots", "an object of named plots")
       .input("clips", "a stream of clips, or pictures");

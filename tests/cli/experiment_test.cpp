@@ -27,12 +27,14 @@ TEST_F(SeriesCommand, RunsAllAndTellsOfThemOnOnePage) {
                               { "title": "Second", "experiments": ["two.json"] }, { "title": "End", "text": "So.", "table": { "columns": ["<a>"], "rows": { "r": ["x & y"] } } })");
   EXPECT_EQ(run(file), 0);
   const auto page = folder_.read("out/report.html");
-  for (const char* text : {"<p>A story</p>", "<h2>First &lt;1&gt;</h2>\n<p>Once.</p>\n<p>Twice.</p>", "<h2>Second</h2>",
-                           "<p>Slopes</p>\n<p><a href=\"two/experiment.html\">Its own page</a>",
-                           "one/trials/run/pictures/1.svg", "<h2>End</h2>\n<p>So.</p>",
-                           "<th scope=\"col\" class=\"text\">&lt;a&gt;</th>", "<td class=\"text\">x &amp; y</td>"})
+  for (const char* text :
+       {"<p>A story</p>", "<h2 id=\"section-1\">First &lt;1&gt;</h2>\n<p>Once.</p>\n<p>Twice.</p>",
+        "<h2 id=\"section-2\">Second</h2>",
+        "<p>Slopes</p>\n<p><a href=\"two/experiment.html\">Its own page</a> has every run: finished.",
+        "one/trials/run/pictures/1.svg", "<h2 id=\"section-3\">End</h2>\n<p>So.</p>",
+        "<th scope=\"col\" class=\"text\">&lt;a&gt;</th>", "<td class=\"text\">x &amp; y</td>"})
     EXPECT_THAT(page, HasSubstr(text));
-  EXPECT_THAT(page, Not(HasSubstr("so far")));
+  EXPECT_THAT(page, Not(HasSubstr("runs finished")));
   EXPECT_THAT(folder_.read("out/two/results.csv"), HasSubstr("scale"));
 }
 
@@ -55,7 +57,7 @@ TEST_F(SeriesCommand, AnExperimentThatFailsDoesNotStopTheOthers) {
   EXPECT_EQ(run(file), 1);
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("this number is not liked"));
   const auto page = folder_.read("out/report.html");
-  EXPECT_THAT(page, HasSubstr("0 of 1 runs finished so far"));
+  EXPECT_THAT(page, HasSubstr("<a href=\"#experiment-bad\">bad</a>: 0 of 1 runs finished, 1 failed</li>"));
   EXPECT_THAT(page, HasSubstr("one/trials/run"));
 }
 

@@ -4,11 +4,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
 
 #include "cli/look.h"
+#include "experiment/meanings.h"
 #include "experiment/series.h"
 #include "graph/differences.h"
 #include "nodes/all_nodes.h"
@@ -111,6 +113,26 @@ TEST(Experiments, OfFiftySentencesHaveTheSameSettings) {
   EXPECT_GT(of_grid.size(), 20u);
   EXPECT_EQ(settings("lips"), of_grid);
   EXPECT_EQ(settings("demnow"), of_grid);
+}
+
+TEST(Experiments, OfAllMethodsExplainTheirMeasures) {
+  const Registry registry = all_nodes();
+  Diagnostics diagnostics;
+  const auto graph = load_graph(test::source("/pipelines/compared-grid-s1.json"), registry, diagnostics);
+  ASSERT_TRUE(graph) << diagnostics.str();
+  std::set<std::string> measures;
+  for (const auto& node : graph->resolved["nodes"])
+    if (node["type"] == "evaluate.sequences")
+      for (const auto& measure : node["params"]["scores"]) measures.insert(measure.get<std::string>());
+  EXPECT_GT(measures.size(), 25u);
+  EXPECT_EQ(meanings_of({"sequences", "acc behind", "acc won"}, {*graph}).size(), 3u);
+  std::ifstream file(test::source("/docs/measures.md"));
+  const std::string docs{std::istreambuf_iterator<char>(file), {}};
+  for (const auto& measure : measures) {
+    const auto meanings = meanings_of({measure}, {*graph});
+    ASSERT_EQ(meanings.size(), 1u) << measure;
+    EXPECT_NE(docs.find("`" + measure + "`"), std::string::npos) << measure;
+  }
 }
 
 TEST(Experiments, OfSpeechWriteNothing) {

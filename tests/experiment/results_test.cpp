@@ -69,9 +69,11 @@ TEST(Results, MeansAreOverRepeats) {
   // Student's t of one degree of freedom is 12.706204736.
   EXPECT_NEAR(estimates[0].low, 2 - 12.706204736432095, 1e-9);
   EXPECT_NEAR(estimates[0].high, 2 + 12.706204736432095, 1e-9);
+  EXPECT_NEAR(estimates[0].deviation, std::sqrt(2), 1e-12);
   EXPECT_EQ(estimates[1].setting, 1u);
   EXPECT_EQ(estimates[1].mean, 10);
   EXPECT_TRUE(std::isnan(estimates[1].low));
+  EXPECT_TRUE(std::isnan(estimates[1].deviation));
 }
 
 TEST(Results, ItemsOfARepeatAreAveragedFirst) {
@@ -98,8 +100,9 @@ TEST(Results, TidyTableHasALineANumber) {
   EXPECT_EQ(json[0]["filters"], 20);
   EXPECT_EQ(json[0]["value"], 0.25);
   EXPECT_TRUE(json[1]["value"].is_null());
-  EXPECT_EQ(estimates_csv(e, estimate(e, {results[0]})),
-            "filters,output,row,measure,n,over,partial,mean,low,high,p\n20,scores,\"a, b\",acc,1,repeats,no,0.25,,,\n");
+  EXPECT_EQ(
+      estimates_csv(e, estimate(e, {results[0]})),
+      "filters,output,row,measure,n,over,partial,mean,std,low,high,p\n20,scores,\"a, b\",acc,1,repeats,no,0.25,,,,\n");
 }
 
 TEST(Results, IntervalsOfATableStayWithTheirScores) {
@@ -114,14 +117,17 @@ TEST(Results, IntervalsOfATableStayWithTheirScores) {
   const std::vector<TrialResult> results = {table, {}, {}, {}};
   const auto estimates = estimate(e, results);
   ASSERT_EQ(estimates.size(), 3u);
+  EXPECT_EQ(estimates[0].deviation, 0.3);
   EXPECT_EQ(estimates[0].low, 0.25);
   EXPECT_EQ(estimates[0].high, 0.75);
   EXPECT_EQ(estimates[0].p, 0.0125);
   EXPECT_TRUE(std::isnan(estimates[2].low));
-  EXPECT_THAT(estimates_csv(e, estimates), HasSubstr("20,scores,ours,acc,1,table,no,0.5,0.25,0.75,0.0125\n"));
-  const auto page = html_results(e, results, "");
+  EXPECT_THAT(estimates_csv(e, estimates), HasSubstr("20,scores,ours,acc,1,table,no,0.5,0.3,0.25,0.75,0.0125\n"));
+  const auto page = html_results(e, {}, results, "");
   EXPECT_THAT(page, HasSubstr("<th scope=\"col\">acc</th><th scope=\"col\">so low</th></tr>"));
-  EXPECT_THAT(page, HasSubstr("<td>0.5<br><small>0.25 to 0.75</small><br><small>p = 0.013</small></td><td>7</td>"));
+  EXPECT_THAT(page, HasSubstr("<td><strong>0.5 ± 0.3</strong><br><small>0.25 to 0.75</small><br>"
+                              "<small>p = 0.013</small></td><td>7</td>"));
+  EXPECT_THAT(page, HasSubstr("<caption>scores (bold: p below 0.05)</caption>"));
   EXPECT_THAT(page, HasSubstr("<td>0</td><td>–</td>"));
   EXPECT_THAT(page, Not(HasSubstr("no confidence intervals")));
   EXPECT_THAT(page, Not(HasSubstr("Wilcoxon"))) << "where nothing is behind";
@@ -134,7 +140,7 @@ TEST(Results, IntervalsOfATableStayWithTheirScores) {
 }
 
 TEST(Results, SayWhatBehindIsAndItsP) {
-  const auto page = html_results(two_settings(),
+  const auto page = html_results(two_settings(), {},
                                  {result_of({{"scores", "", "ours", "acc", 0.5},
                                              {"scores", "", "ours", "acc p", 0.25},
                                              {"best", "", "ours", "acc behind", 0.125},
@@ -143,9 +149,44 @@ TEST(Results, SayWhatBehindIsAndItsP) {
                                   {},
                                   {}},
                                  "");
-  EXPECT_THAT(page, HasSubstr("gives. Behind is behind the method of the best mean, with p of Wilcoxon"));
+  EXPECT_THAT(page, HasSubstr("and p. Behind is behind the method of the best mean, with p of Wilcoxon"));
   EXPECT_THAT(page, HasSubstr("over all pairs of methods"));
   EXPECT_THAT(page, HasSubstr("<td>0.125<br><small>p = 0.062</small></td>"));
+}
+
+TEST(Results, DeviationsWithoutIntervalsAreOfTheTableToo) {
+  const auto e = two_settings();
+  const std::vector<TrialResult> results = {
+      result_of({{"s", "", "all", "acc", 0.5}, {"s", "", "all", "acc std", 0.25}}), {}, {}, {}};
+  EXPECT_EQ(estimate(e, results)[0].over, Estimate::Over::table);
+  const auto page = html_results(e, {}, results, "");
+  EXPECT_THAT(page, HasSubstr("<td>0.5 ± 0.25</td>"));
+  EXPECT_THAT(page, HasSubstr("<caption>s</caption>")) << "nothing is bold";
+  EXPECT_THAT(page, HasSubstr("where the table gives them"));
+}
+
+TEST(Results, RepeatsShowTheirDeviationAndInterval) {
+  const auto e = two_settings();
+  const auto page = html_results(e, {},
+                                 {result_of({{"s", "", "", "acc", 1}}), result_of({{"s", "", "", "acc", 3}}),
+                                  result_of({{"s", "", "", "acc", 4}}), result_of({{"s", "", "", "acc", 4}})},
+                                 "");
+  EXPECT_THAT(page, HasSubstr("<td>2 ± 1.4<br><small>-10.7 to 14.7</small></td>"));
+  EXPECT_THAT(page, HasSubstr("<td>4 ± 0<br><small>4 to 4</small></td>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"text\">26</td>")) << "a row a setting has its level beside it";
+}
+
+TEST(Results, RowsOfASettingStandBelowItsLevels) {
+  const auto e = two_settings();
+  const auto rows = result_of({{"s", "", "ours", "acc", 1}, {"s", "", "<theirs>", "acc", 2}});
+  const auto page = html_results(e, {}, {rows, {}, rows, {}}, "");
+  EXPECT_THAT(page, HasSubstr("<tr><th scope=\"col\" class=\"text\">row</th><th scope=\"col\">acc</th></tr>"));
+  const std::string both =
+      "</tr>\n<tr><td class=\"text\">ours</td><td>1</td></tr>\n"
+      "<tr><td class=\"text\">&lt;theirs&gt;</td><td>2</td></tr>\n";
+  for (const char* level : {"20", "26"})
+    EXPECT_THAT(page, HasSubstr("<tr><th scope=\"rowgroup\" colspan=\"2\" class=\"rows\"><span>filters: " +
+                                std::string(level) + "</span></th>" + both));
 }
 
 TEST(Results, PlotsAreLinesOverANumberAndBarsElse) {
@@ -218,7 +259,7 @@ TEST(Results, PartialOnesAreMarked) {
   std::vector<Graph> graphs(4);
   for (auto& graph : graphs) graph.resolved = {{"nodes", Json::object()}, {"seed", 1}};
   const auto page = experiment_page(e, graphs, results);
-  EXPECT_THAT(page, HasSubstr(" *</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>1.5 ± 0.71 *<br>"));
   EXPECT_THAT(page, HasSubstr("Without items that failed"));
   EXPECT_THAT(page, HasSubstr("<td>7</td>"));
 }

@@ -42,7 +42,7 @@ struct ScoreNumber {
 };
 inline void describe(Description<ScoreNumber>& d) {
   d.type("test.score").summary("a line").stored();
-  d.input("number").output("scores");
+  d.input("number").output("scores", "of a line; y: its height at x, px; title: letters of <the title>");
   d.param("scale", &ScoreNumber::scale).doc("slope");
   d.param("offset", &ScoreNumber::offset).doc("height");
   d.param("noise", &ScoreNumber::noise).doc("standard deviation");

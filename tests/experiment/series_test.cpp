@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "experiment/page.h"
 #include "tests/experiment/scored_nodes.h"
 
 namespace talkgraph {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class SeriesTest : public test::ScoredExperiments {
  protected:
@@ -40,6 +42,56 @@ TEST_F(SeriesTest, ChangesGoToTheGraphsThatHaveWhatTheySet) {
   EXPECT_EQ(both->sections[0].parts[0].graphs[0].resolved["nodes"]["score"]["params"]["scale"], 5);
   EXPECT_EQ(both->sections[0].parts[1].graphs[0].resolved["nodes"]["score"]["params"]["scale"], 1);
   EXPECT_THAT(complaint(sections, {"scal=5"}), HasSubstr("scal"));
+}
+
+TEST_F(SeriesTest, PageHasContentsWithHowFarExperimentsAre) {
+  folder_.write("thr ee.json", R"({ "extends": "two.json" })");
+  Diagnostics diagnostics;
+  auto all = load_series(series(R"({ "title": "A < B", "experiments": ["one.json", "two.json"] },
+                                   { "title": "C", "experiments": ["thr ee.json"] }, { "title": "D" })"),
+                         registry_, {}, diagnostics);
+  ASSERT_TRUE(all) << diagnostics.str();
+  auto& parts = all->sections[0].parts;
+  parts[0].results.resize(1);
+  parts[0].results[0].status = TrialResult::Status::finished;
+  parts[1].results.resize(2);
+  parts[1].results[0].status = TrialResult::Status::finished;
+  parts[1].results[1].status = TrialResult::Status::failed;
+  const auto page = series_page(*all);
+  for (const char* text :
+       {"<li><a href=\"#section-1\">A &lt; B</a>\n<ul>\n<li><a href=\"#experiment-one\">one</a>: finished</li>\n"
+        "<li><a href=\"#experiment-two\">two</a>: 1 of 2 runs finished, 1 failed</li>\n</ul></li>\n",
+        "<li><a href=\"#experiment-thr%20ee\">thr ee</a>: not run</li>", "<h2 id=\"section-1\">A &lt; B</h2>",
+        "<h2 id=\"section-3\">D</h2>",
+        "<h3 id=\"experiment-one\">one</h3>\n<p><a href=\"one/experiment.html\">Its own page</a> has every run: "
+        "finished.</p>",
+        "<h3 id=\"experiment-thr%20ee\">thr ee</h3>\n<p>Slopes</p>\n<p>It has not been run.</p>\n"})
+    EXPECT_THAT(page, HasSubstr(text));
+  EXPECT_THAT(page, Not(HasSubstr("thr%20ee/experiment.html"))) << "there is none yet";
+  parts[1].results[1].status = TrialResult::Status::stopped;
+  EXPECT_THAT(series_page(*all), HasSubstr("two</a>: 1 of 2 runs finished</li>"));
+}
+
+TEST_F(SeriesTest, PageSaysWhatMeasuresAreOnce) {
+  Diagnostics diagnostics;
+  auto all = load_series(series(R"({ "experiments": ["one.json", "two.json"] })"), registry_, {}, diagnostics);
+  ASSERT_TRUE(all) << diagnostics.str();
+  EXPECT_THAT(series_page(*all), Not(HasSubstr("What the measures are"))) << "there are no scores yet";
+  for (auto& part : all->sections[0].parts) {
+    part.results.resize(part.experiment.trials.size());
+    part.results[0].observations = {
+        {"scores", "", "", "y", 1}, {"scores", "", "", "title", 2}, {"scores", "", "", "z", 3}};
+  }
+  const std::string page = series_page(*all);
+  const std::string legend =
+      "<dl>\n<dt>y</dt><dd>its height at x, px</dd>\n<dt>title</dt><dd>letters of &lt;the title&gt;</dd>\n</dl>";
+  EXPECT_THAT(page, HasSubstr(legend));
+  EXPECT_EQ(page.find("<dl>"), page.rfind("<dl>"));
+  EXPECT_THAT(page,
+              HasSubstr("<th scope=\"col\"><abbr title=\"its height at x, px\">y</abbr></th><th scope=\"col\"><abbr "
+                        "title=\"letters of &lt;the title&gt;\">title</abbr></th><th scope=\"col\">z</th>"));
+  const auto& [experiment, graphs, results] = all->sections[0].parts[0];
+  EXPECT_THAT(experiment_page(experiment, graphs, results), HasSubstr(legend));
 }
 
 TEST_F(SeriesTest, ChangesReplaceWhatExperimentsSetButNotWhatTheyVary) {

@@ -106,7 +106,33 @@ TEST_F(Report, ShowsIntervalsAndTestsBelowTheirMeans) {
                                             {"a"},
                                             {{0.5, 0.125, 0.4, 0.6, 0.01, 2}}});
   EXPECT_THAT(html, HasSubstr("<th scope=\"col\">acc</th><th scope=\"col\">so low</th></tr>"));
-  EXPECT_THAT(html, HasSubstr("<td>0.5 ± 0.12<br><small>0.4 to 0.6</small><br><small>p = 0.01</small></td><td>2</td>"));
+  EXPECT_THAT(
+      html,
+      HasSubstr(
+          "<td><strong>0.5 ± 0.12</strong><br><small>0.4 to 0.6</small><br><small>p = 0.01</small></td><td>2</td>"));
+}
+
+TEST_F(Report, SaysWhatBoldNumbersAreWhereThereAreAny) {
+  const auto table = [](double p) {
+    return html_table("t", {"", "method", {"acc", "acc p", "so p"}, {"a", "b"}, {{0.5, NAN, 0.01}, {0.25, p, 0.01}}});
+  };
+  EXPECT_THAT(table(0.049), HasSubstr("<caption>t (bold: p below 0.05)</caption>"));
+  EXPECT_THAT(table(0.049), HasSubstr("<td>0.5</td><td>0.01</td>"));
+  EXPECT_THAT(table(0.049), HasSubstr("<td><strong>0.25</strong><br><small>p = 0.049</small></td>"));
+  EXPECT_THAT(table(0.05), HasSubstr("<caption>t</caption>"));
+  EXPECT_THAT(table(0.05), HasSubstr("<td>0.25<br><small>p = 0.05</small></td>"));
+}
+
+TEST_F(Report, NumbersHaveTheirMarkBesideThem) {
+  EXPECT_EQ(html_number({0.5, 0.125, 0.25, 0.75}, " *"), "0.5 ± 0.12 *<br><small>0.25 to 0.75</small>");
+  EXPECT_EQ(html_number({-0.0}), "0");
+}
+
+TEST_F(Report, HeadingsOfTablesMayBeHtml) {
+  const std::string html = html_table("a < b", {"<abbr>acc</abbr>"}, {{heading_cell("x", 1)}, {number_cell("1")}});
+  EXPECT_THAT(html, HasSubstr("<caption>a &lt; b</caption>"));
+  EXPECT_THAT(html, HasSubstr("<th scope=\"col\"><abbr>acc</abbr></th>"));
+  EXPECT_THAT(html, HasSubstr("colspan=\"1\" class=\"rows\"><span>x</span></th>"));
 }
 
 TEST_F(Report, ShowsIntervalsOfSharesThatHaveNoDeviation) {
