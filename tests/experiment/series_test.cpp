@@ -94,6 +94,19 @@ TEST_F(SeriesTest, PageSaysWhatMeasuresAreOnce) {
   EXPECT_THAT(experiment_page(experiment, graphs, results), HasSubstr(legend));
 }
 
+TEST_F(SeriesTest, ALongLineOfSettingsIsFolded) {
+  folder_.write("fixed.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "set": { "scale": 12 } })");
+  Diagnostics diagnostics;
+  auto all = load_series(series(R"({ "experiments": ["fixed.json"] })"), registry_, {}, diagnostics);
+  ASSERT_TRUE(all) << diagnostics.str();
+  auto& [experiment, graphs, results] = all->sections[0].parts[0];
+  const std::string folded =
+      "<details><summary>What is set in all runs</summary>\n<p>In all runs <code>scale=12</code>";
+  EXPECT_THAT(experiment_page(experiment, graphs, results), Not(HasSubstr(folded)));
+  experiment.set.resize(7, experiment.set[0]);
+  EXPECT_THAT(experiment_page(experiment, graphs, results), HasSubstr(folded));
+}
+
 TEST_F(SeriesTest, ChangesReplaceWhatExperimentsSetButNotWhatTheyVary) {
   folder_.write("fixed.json", R"({ "graph": "graph.json", "tabulate": ["scores"], "set": { "scale": 12 } })");
   const std::string sections = R"({ "title": "Both", "experiments": ["fixed.json", "two.json"] })";
