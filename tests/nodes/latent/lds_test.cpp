@@ -206,6 +206,14 @@ double log_likelihood(const Lds& model, const Sequences& data) {
   return sum;
 }
 
+/// One of both that a system of two states learns from one sequence.
+std::complex<double> pole_of_two_states(const Eigen::MatrixXd& frames) {
+  Context context;
+  TrainLds train;
+  train.latent_dimension = 2;
+  return train.fit({frames, {frames.rows()}}, context).prediction.eigenvalues()(0);
+}
+
 // Standardised principal components: no direction has more variance than another.
 TEST(Lds, SeesMovementInWhiteComponents) {
   Eigen::MatrixXd frames = gaussian(300, 4, 1);
@@ -216,11 +224,7 @@ TEST(Lds, SeesMovementInWhiteComponents) {
   frames.rowwise() -= frames.colwise().mean().eval();
   const Eigen::LLT<Eigen::MatrixXd> root(frames.transpose() * frames / 300);
   frames = root.matrixL().solve(frames.transpose()).transpose().eval();
-  Context context;
-  TrainLds train;
-  train.latent_dimension = 2;
-  const Lds model = train.fit({frames, {300}}, context);
-  const std::complex<double> pole = model.prediction.eigenvalues()(0);
+  const auto pole = pole_of_two_states(frames);
   EXPECT_NEAR(std::abs(std::arg(pole)), 0.5, 0.01);
   EXPECT_GT(std::abs(pole), 0.95);
 }
@@ -271,11 +275,7 @@ TEST(Lds, MoreStatesThanDimensionsSeeAnOscillation) {
   Eigen::MatrixXd frames(300, 1);
   for (Eigen::Index t = 0; t < 300; ++t) frames(t, 0) = 5 + std::sin(0.5 * static_cast<double>(t));
   frames += 0.05 * gaussian(300, 1, 1);
-  Context context;
-  TrainLds train;
-  train.latent_dimension = 2;
-  const Lds model = train.fit({frames, {300}}, context);
-  const std::complex<double> pole = model.prediction.eigenvalues()(0);
+  const auto pole = pole_of_two_states(frames);
   EXPECT_NEAR(std::abs(std::arg(pole)), 0.5, 0.01);
   EXPECT_NEAR(std::abs(pole), 1, 0.01);
 }
