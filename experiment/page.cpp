@@ -324,7 +324,7 @@ std::string settings(const Experiment& experiment) {
   for (const auto& [path, value] : experiment.set)
     all.push_back(fmt::format("<code>{}</code>", escape_markup(path + "=" + text_of(value.plain()))));
   if (all.empty()) return "";
-  const std::string line = fmt::format("<p>In all runs {}.</p>\n", fmt::join(all, ", "));
+  std::string line = fmt::format("<p>In all runs {}.</p>\n", fmt::join(all, ", "));
   if (all.size() <= in_sight) return line;
   return fmt::format("<details><summary>What is set in all runs</summary>\n{}</details>\n", line);
 }
