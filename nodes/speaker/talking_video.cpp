@@ -25,6 +25,10 @@ class LastDrawn {
     kept_[next_++ % kept_.size()] = {t, drawn.clone()};
     return drawn;
   }
+  void forget() {
+    const std::scoped_lock lock(mutex_);
+    kept_ = {};
+  }
 
  private:
   struct Kept {
@@ -59,6 +63,10 @@ class TalkingVideo final : public VideoSource, public std::enable_shared_from_th
    public:
     explicit Reader(std::shared_ptr<const TalkingVideo> video)
         : video_(std::move(video)), noise_(video_->noise_seed_) {}
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+    /// Clips outlive their readers, hundreds at a time.
+    ~Reader() override { video_->drawn_.forget(); }
     bool next(cv::Mat& frame) override {
       if (at_ == video_->moments_.size()) return false;
       frame = video_->draw(at_++, noise_.bits());
