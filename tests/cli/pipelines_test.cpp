@@ -126,8 +126,7 @@ TEST(Experiments, OfAllMethodsExplainTheirMeasures) {
       for (const auto& measure : node["params"]["scores"]) measures.insert(measure.get<std::string>());
   EXPECT_GT(measures.size(), 25u);
   EXPECT_EQ(meanings_of({"sequences", "acc behind", "acc won"}, {*graph}).size(), 3u);
-  std::ifstream file(test::source("/docs/measures.md"));
-  const std::string docs{std::istreambuf_iterator<char>(file), {}};
+  const std::string docs = text_of("/docs/measures.md");
   for (const auto& measure : measures) {
     const auto meanings = meanings_of({measure}, {*graph});
     ASSERT_EQ(meanings.size(), 1u) << measure;
