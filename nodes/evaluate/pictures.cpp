@@ -102,11 +102,17 @@ cv::Mat squared_difference(const cv::Mat& a, const cv::Mat& b) {
   return d.mul(d);
 }
 
-/// What two pictures of one frame show.
+/// Two pictures of one frame, BGR.
 struct Frame {
-  cv::Mat recorded, drawn;            // BGR
-  cv::Mat recorded_grey, drawn_grey;  // 32-bit
+  cv::Mat recorded, drawn;
 };
+
+/// The part of a picture that the measures of a face look at: similarity reaches 5 pixels beyond it.
+cv::Rect around(const std::vector<cv::Point>& outline, cv::Size picture) {
+  constexpr int reach = 6;
+  const cv::Rect face = cv::boundingRect(outline);
+  return cv::Rect(face.tl() - cv::Point(reach, reach), face.br() + cv::Point(reach, reach)) & cv::Rect({}, picture);
+}
 
 class Comparison {
  public:
@@ -115,22 +121,25 @@ class Comparison {
   void add(const Frame& now, const Frame* before, const Shape& shape) {
     std::vector<int> all(static_cast<std::size_t>(shape.rows()));
     std::iota(all.begin(), all.end(), 0);
-    const auto outline = hull(shape, all);
-    const cv::Size size = now.recorded.size();
-    const cv::Mat face = inside(outline, size), mouth = inside(hull(shape, settings_.mouth), size);
-    const cv::Mat error = squared_difference(now.recorded, now.drawn),
-                  alike = similarity(now.recorded_grey, now.drawn_grey);
+    const cv::Rect box = around(hull(shape, all), now.recorded.size());
+    if (box.empty()) return;
+    const Shape here = shape.rowwise() - Eigen::RowVector2d(box.x, box.y);
+    const auto outline = hull(here, all);
+    const cv::Mat face = inside(outline, box.size()), mouth = inside(hull(here, settings_.mouth), box.size());
+    const cv::Mat error = squared_difference(now.recorded(box), now.drawn(box));
     error_face_.add(error, face);
     error_mouth_.add(error, mouth);
+    if (before) {
+      recorded_.change.add(squared_difference(now.recorded(box), before->recorded(box)), mouth);
+      drawn_.change.add(squared_difference(now.drawn(box), before->drawn(box)), mouth);
+    }
+    const cv::Mat recorded = grey(now.recorded(box)), drawn = grey(now.drawn(box));
+    const cv::Mat alike = similarity(recorded, drawn);
     alike_face_.add(alike, face);
     alike_mouth_.add(alike, mouth);
-    add_sharpness(now, hull(shape, settings_.inner));
-    if (before) {
-      recorded_.change.add(squared_difference(now.recorded, before->recorded), mouth);
-      drawn_.change.add(squared_difference(now.drawn, before->drawn), mouth);
-    }
-    recorded_.steps += steps_across(now.recorded_grey, outline);
-    drawn_.steps += steps_across(now.drawn_grey, outline);
+    add_sharpness(recorded, drawn, hull(here, settings_.inner));
+    recorded_.steps += steps_across(recorded, outline);
+    drawn_.steps += steps_across(drawn, outline);
   }
 
   Scores scores() const {
@@ -146,12 +155,12 @@ class Comparison {
   }
 
  private:
-  void add_sharpness(const Frame& now, const std::vector<cv::Point>& lips) {
+  void add_sharpness(const cv::Mat& recorded, const cv::Mat& drawn, const std::vector<cv::Point>& lips) {
     const cv::Rect box = cv::boundingRect(lips);
     if (box.height < settings_.parted * box.width) return;
-    const cv::Mat mask = inside(lips, now.recorded.size());
-    recorded_.gradient.add(gradient_energy(now.recorded_grey), mask);
-    drawn_.gradient.add(gradient_energy(now.drawn_grey), mask);
+    const cv::Mat mask = inside(lips, recorded.size());
+    recorded_.gradient.add(gradient_energy(recorded), mask);
+    drawn_.gradient.add(gradient_energy(drawn), mask);
   }
 
   struct Side {
@@ -192,8 +201,6 @@ std::optional<Scores> ComparePictures::operator()(const Video& recorded, const V
     const Shape& shape = landmarks.frames[t];
     counts = !recorded.is_damaged(static_cast<std::int64_t>(t)) && shape.rows() > 0 && shape.allFinite();
     if (!counts) continue;
-    now.recorded_grey = grey(now.recorded);
-    now.drawn_grey = grey(now.drawn);
     comparison.add(now, counted ? &before : nullptr, shape);
     before = now;
     ++compared;
@@ -206,7 +213,7 @@ std::optional<Scores> ComparePictures::operator()(const Video& recorded, const V
 
 void describe(Description<ComparePictures>& d) {
   d.type("evaluate.pictures")
-      .version(2)
+      .version(3)
       .summary("how near a drawn face comes to the recorded one: likeness, sharpness, jumps, seam");
   d.source("SSIM: Wang, Bovik, Sheikh & Simoncelli 2004").stored();
   d.input("recorded", "the clip")

@@ -103,6 +103,24 @@ TEST(ComparePictures, SeesAnEdgeAroundTheFace) {
   EXPECT_NEAR(scores(changed([](cv::Mat& f) { f += cv::Scalar::all(30); })).at("seam"), 1, 1e-6);
 }
 
+TEST(ComparePictures, DependsOnTheFaceAlone) {
+  const auto framed = [](std::vector<cv::Mat> all) {
+    for (auto& f : all) cv::copyMakeBorder(f, f, 70, 90, 50, 110, cv::BORDER_CONSTANT, cv::Scalar(3, 200, 40));
+    return video(all);
+  };
+  const auto blurred = changed([](cv::Mat& f) { cv::GaussianBlur(f, f, {}, 1); });
+  auto moved = points();
+  for (auto& shape : moved.frames) shape.rowwise() += Eigen::RowVector2d(50, 70);
+  const auto in_frame = node(framed(recorded_frames()), framed(blurred), moved)->values;
+  for (const auto& [name, value] : scores(blurred)) EXPECT_NEAR(in_frame.at(name), value, 1e-5) << name;
+}
+
+TEST(ComparePictures, CountsNothingOfAFaceOutsideThePicture) {
+  auto outside = points();
+  for (auto& shape : outside.frames) shape.array() += 500;
+  EXPECT_TRUE(std::isnan(node(video(recorded_frames()), video(recorded_frames()), outside)->values.at("ssim_face")));
+}
+
 TEST(ComparePictures, LeavesDamagedFramesOut) {
   auto broken = recorded_frames();
   broken[2].setTo(0);
