@@ -1,44 +1,11 @@
 #include "nodes/speaker/talking_video.h"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
 #include "graph/random.h"
 
 namespace talkgraph::face {
 namespace {
-
-/// The frames drawn last: a clip and what is drawn upon it are read side by side, by a thread or two.
-class LastDrawn {
- public:
-  /// Frame t, drawn if it is none of them.
-  template <class Draw>
-  cv::Mat frame(std::size_t t, const Draw& draw) {
-    {
-      const std::scoped_lock lock(mutex_);
-      const auto at = std::ranges::find_if(kept_, [t](const Kept& k) { return k.t == t && !k.frame.empty(); });
-      if (at != kept_.end()) return at->frame.clone();
-    }
-    cv::Mat drawn = draw();
-    const std::scoped_lock lock(mutex_);
-    kept_[next_++ % kept_.size()] = {t, drawn.clone()};
-    return drawn;
-  }
-  void forget() {
-    const std::scoped_lock lock(mutex_);
-    kept_ = {};
-  }
-
- private:
-  struct Kept {
-    std::size_t t = 0;
-    cv::Mat frame;
-  };
-  std::mutex mutex_;
-  std::array<Kept, 4> kept_;
-  std::size_t next_ = 0;
-};
 
 class TalkingVideo final : public VideoSource, public std::enable_shared_from_this<TalkingVideo> {
  public:
@@ -63,10 +30,6 @@ class TalkingVideo final : public VideoSource, public std::enable_shared_from_th
    public:
     explicit Reader(std::shared_ptr<const TalkingVideo> video)
         : video_(std::move(video)), noise_(video_->noise_seed_) {}
-    Reader(const Reader&) = delete;
-    Reader& operator=(const Reader&) = delete;
-    /// Clips outlive their readers, hundreds at a time.
-    ~Reader() override { video_->drawn_.forget(); }
     bool next(cv::Mat& frame) override {
       if (at_ == video_->moments_.size()) return false;
       frame = video_->draw(at_++, noise_.bits());
@@ -80,10 +43,9 @@ class TalkingVideo final : public VideoSource, public std::enable_shared_from_th
   };
 
   cv::Mat draw(std::size_t t, std::uint64_t grain) const {
-    return drawn_.frame(t, [&] { return portrait_->renderer().draw(moments_[t], grain); });
+    return portrait_->drawn().frame(key_, t, [&] { return portrait_->renderer().draw(moments_[t], grain); });
   }
 
-  mutable LastDrawn drawn_;
   std::shared_ptr<const Portrait> portrait_;
   std::vector<Moment> moments_;
   Rational rate_;
