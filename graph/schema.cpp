@@ -159,6 +159,7 @@ Json json_schema(const Registry& registry) {
                            {"graph"})},
       {"node", any_node(registry)}};
   for (const auto& name : registry.names()) definitions["node:" + name] = node_schema(*registry.find(name));
+  const Json parameter = object({{"default", Json(true)}, {"doc", text("what it is")}});
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
                  {"title", "talkgraph graph"},
                  {"description", "Nodes and how they are wired; docs/graphs.md explains"}};
@@ -166,7 +167,7 @@ Json json_schema(const Registry& registry) {
       {{"$schema", text("this schema")},
        {"extends", text("a graph file that this one is laid over: members are merged, null takes one away")},
        {"description", text("what the graph does")},
-       {"parameters", object_of(object({{"default", Json(true)}, {"doc", text("what it is")}}))},
+       {"parameters", {{"type", "object"}}},
        {"inputs", object_of({{"anyOf",
                               {refer("inputType"), object({{"type", refer("inputType")},
                                                            {"optional", {{"type", "boolean"}}},
@@ -178,9 +179,13 @@ Json json_schema(const Registry& registry) {
       {}));
   // What is laid over another graph holds parts of nodes, and null for what it takes away.
   schema["if"] = {{"required", {"extends"}}};
-  schema["then"]["properties"] = {{"nodes", object_of({{"type", {"object", "null"}}})},
+  schema["then"]["properties"] = {{"parameters", object_of({{"anyOf", {parameter, {{"type", "null"}}}}})},
+                                  {"nodes", object_of({{"type", {"object", "null"}}})},
                                   {"outputs", object_of({{"type", {"string", "null"}}})}};
-  schema["else"] = {{"properties", {{"nodes", object_of(refer("node"))}, {"outputs", object_of(refer("source"))}}},
+  schema["else"] = {{"properties",
+                     {{"parameters", object_of(parameter)},
+                      {"nodes", object_of(refer("node"))},
+                      {"outputs", object_of(refer("source"))}}},
                     {"required", {"nodes"}}};
   schema["definitions"] = std::move(definitions);
   return schema;
