@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nodes/types/visemes.h"
+
 namespace talkgraph {
 
 Eigen::MatrixXd phone_shares(const PhoneTrack& phones, const std::vector<std::string>& inventory, const Track& like) {
@@ -20,13 +22,26 @@ Eigen::MatrixXd phone_shares(const PhoneTrack& phones, const std::vector<std::st
   return shares;
 }
 
+Eigen::MatrixXd places(const PhoneTrack& phones, const Track& like, double time) {
+  const auto ends = std::ranges::find_if(phones.phones.rbegin(), phones.phones.rend(),
+                                         [](const auto& phone) { return !is_pause(phone.label); });
+  const double end = ends != phones.phones.rend() ? ends->end : like.time(like.frames());
+  Eigen::MatrixXd p(like.frames(), 2);
+  for (Eigen::Index t = 0; t < like.frames(); ++t) {
+    const double at = like.time(t);
+    p.row(t) << std::exp(-(at - like.start) / time), std::exp(-std::max(0.0, end - at) / time);
+  }
+  return p;
+}
+
 Eigen::MatrixXd context_frames(const ContextGp& model, const Track& audio, const PhoneTrack& phones,
                                Eigen::Index frames) {
   const Eigen::Index heard = model.audio_mean.size(), said = std::ssize(model.phones);
-  Eigen::MatrixXd f(frames, heard + said);
+  Eigen::MatrixXd f(frames, model.map.rows());
   f.leftCols(heard) =
       (audio.values.topRows(frames).rowwise() - model.audio_mean).array().rowwise() * model.audio_scale.array();
-  f.rightCols(said) = phone_shares(phones, model.phones, audio).topRows(frames);
+  f.middleCols(heard, said) = phone_shares(phones, model.phones, audio).topRows(frames);
+  if (model.place_time > 0) f.rightCols(2) = places(phones, audio, model.place_time).topRows(frames);
   return f * model.map;
 }
 

@@ -54,7 +54,7 @@ void learn_kernel_of(ContextTraining& training, const KernelLearning& learning, 
   ContextGp& model = training.model;
   const Eigen::Index c = model.map.cols();
   const auto kernel = learn_kernel(learning, examples, {model.window, Eigen::MatrixXd::Identity(c, c), model.noise},
-                                   model.audio_mean.size(), random, context);
+                                   {model.audio_mean.size(), std::ssize(model.phones)}, random, context);
   model.window = kernel.window;
   model.noise = kernel.noise;
   model.map *= kernel.map;
@@ -105,7 +105,7 @@ ContextGp TrainContextGp::operator()(const Collected<Track>& audio, const Collec
 }
 
 void describe(Description<TrainContextGp>& d) {
-  d.type("mapping.context_gp").version(3).stored();
+  d.type("mapping.context_gp").version(4).stored();
   d.summary("learns a Gaussian process of visual parameters whose kernel compares sound and phones on both sides");
   d.input("audio", "speech features at the video rate of the training utterances")
       .input("phones", "their phones with times")
@@ -117,10 +117,16 @@ void describe(Description<TrainContextGp>& d) {
       .at_least(0)
       .doc("what unrelated sound costs, natural logarithm of the kernel");
   d.param("phones", &TrainContextGp::phones).at_least(0).doc("what a different phone costs; 0: sound alone");
+  d.param("place", &TrainContextGp::place)
+      .at_least(0)
+      .doc("what the start of a recording, or the end of speech, costs against what is far from it; 0: not compared");
+  d.param("place_time", &TrainContextGp::place_time).positive().unit("s").doc("in which these are left behind, to 1/e");
   d.param("noise", &TrainContextGp::noise).positive().doc("variance of the noise, of the signal's");
   d.param("kernel_steps", &TrainContextGp::kernel_steps)
       .at_least(0)
-      .doc("in which window, noise and a map of sound and phones are learnt by leaving out utterances; 0: as given");
+      .doc(
+          "in which window, noise and a map of sound, phones and place are learnt by leaving out utterances; 0: as "
+          "given");
   d.param("kernel_utterances", &TrainContextGp::kernel_utterances).at_least(2).doc("of a step, drawn anew for each");
   d.param("margin", &TrainContextGp::margin).at_least(0).unit("frames").doc("around speech, where all is learnt");
   d.param("pauses", &TrainContextGp::pauses).at_least(1).doc("of other frames every n-th is learnt");

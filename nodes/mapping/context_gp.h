@@ -13,10 +13,11 @@ namespace talkgraph {
 /// (docs/method.md §5). Instead of a label that fits or does not, a context counts the more the more it resembles:
 ///   −ln k = Σ_l w_l (sound · ½ mean_d (a_d − a'_d)² + phones · ½ |o − o'|²),  w_l ∝ exp(−(l / width)²),
 /// a z-scored audio features and o the share of the frame that each phone takes. So unrelated sound costs `sound`, a
-/// different phone `phones`.
+/// different phone `phones`. With `place` above 0, `place` |e − e'|² joins the sum, e being exp(−t / place_time) for
+/// the time t since the recording begins and for that until speech ends: speakers settle, and come to rest.
 ///
 /// With these costs, window and noise begins the kernel that is learnt in `kernel_steps`, of
-/// `kernel_utterances` each: −ln k = Σ_l w_l |(x_l − x'_l) map|² with x both streams, by leaving out utterances
+/// `kernel_utterances` each: −ln k = Σ_l w_l |(x_l − x'_l) map|² with x all of these, by leaving out utterances
 /// (learn_kernel). Where fewer than two have speech, or with 0 steps, it stays as it begins.
 ///
 /// Frames farther than `margin` from speech are pauses, of which every `pauses`-th is learnt; lost frames are not, and
@@ -34,6 +35,8 @@ struct TrainContextGp {
   double width = 4;
   double sound = 0.6;
   double phones = 2;
+  double place = 0;
+  double place_time = 1.2;
   double noise = 1;
   int kernel_steps = 40;
   int kernel_utterances = 30;

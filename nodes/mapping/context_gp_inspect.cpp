@@ -7,7 +7,7 @@ namespace talkgraph {
 namespace {
 
 Table costs_of_phones(const ContextGp& model) {
-  const Eigen::MatrixXd map = model.map.bottomRows(std::ssize(model.phones));
+  const Eigen::MatrixXd map = model.map.middleRows(model.audio_mean.size(), std::ssize(model.phones));
   const double weight = model.window.sum();
   struct Pair {
     double cost;
@@ -37,6 +37,15 @@ Table costs_of_sound(const ContextGp& model) {
   return table;
 }
 
+Table costs_of_place(const ContextGp& model) {
+  Table table{"What places in the recording cost soft contexts", "place", {"cost"}, {}, {}};
+  if (model.place_time == 0) return table;
+  table.rows = {"its start", "the end of speech"};
+  for (const auto& row : model.map.bottomRows(2).rowwise())
+    table.cells.push_back({model.window.sum() * row.squaredNorm()});
+  return table;
+}
+
 Table weights_of_window(const ContextGp& model) {
   Table table{"What soft contexts look at", "frame", {"weight"}, {}, {}};
   for (Eigen::Index l = 0; l < model.window.size(); ++l) {
@@ -49,15 +58,16 @@ Table weights_of_window(const ContextGp& model) {
 }  // namespace
 
 InspectContextGp::Tables InspectContextGp::operator()(const ContextGp& model) const {
-  return {costs_of_phones(model), costs_of_sound(model), weights_of_window(model)};
+  return {costs_of_phones(model), costs_of_sound(model), costs_of_place(model), weights_of_window(model)};
 }
 
 void describe(Description<InspectContextGp>& d) {
   d.type("mapping.context_gp_inspect")
-      .summary("which phones soft contexts hold alike, and how much sound and neighbours count");
+      .summary("which phones soft contexts hold alike, and how much sound, place and neighbours count");
   d.input("model", "of mapping.context_gp")
       .output("phones", &InspectContextGp::Tables::phones, "a row a pair of phones, the most alike first")
       .output("sound", &InspectContextGp::Tables::sound, "a row a dimension of the sound")
+      .output("place", &InspectContextGp::Tables::place, "a row a place; none if places are not compared")
       .output("window", &InspectContextGp::Tables::window, "a row a neighbour");
 }
 

@@ -100,6 +100,18 @@ Utterances drawn(const std::vector<KernelExample>& utterances, std::size_t most,
   return all;
 }
 
+/// c × c: 1 where two dimensions are of one group.
+Eigen::MatrixXd same_group(Eigen::Index c, const std::vector<Eigen::Index>& groups) {
+  Eigen::MatrixXd same = Eigen::MatrixXd::Zero(c, c);
+  Eigen::Index at = 0;
+  for (const auto size : groups) {
+    same.block(at, at, size, size).setOnes();
+    at += size;
+  }
+  same.bottomRightCorner(c - at, c - at).setOnes();
+  return same;
+}
+
 }  // namespace
 
 Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factorise(Eigen::MatrixXd& covariance, double noise) {
@@ -143,8 +155,10 @@ LeftOutError left_out_error(const Utterances& utterances, const ContextKernel& k
 }
 
 ContextKernel learn_kernel(const KernelLearning& learning, const std::vector<KernelExample>& utterances,
-                           ContextKernel kernel, Eigen::Index heard, Random& random, Context& context) {
-  const auto c = kernel.map.rows(), said = c - heard;
+                           ContextKernel kernel, const std::vector<Eigen::Index>& groups, Random& random,
+                           Context& context) {
+  const auto c = kernel.map.rows();
+  const Eigen::MatrixXd within = same_group(c, groups);
   Adam window(kernel.window.size(), 0.05), map(c * c, 0.02), noise(1, 0.05);
   for (int step = 1; step <= learning.steps; ++step) {
     context.check_cancelled();
@@ -152,8 +166,7 @@ ContextKernel learn_kernel(const KernelLearning& learning, const std::vector<Ker
     auto [error, by] = left_out_error(some, kernel);
     if (step == 1 || step == learning.steps)
       context.log(fmt::format("step {}: squared error of utterances left out, of their variance: {:.3f}", step, error));
-    by.map.topRightCorner(heard, said).setZero();
-    by.map.bottomLeftCorner(said, heard).setZero();
+    by.map.array() *= within.array();
     const double share = 1 - 0.8 * step / learning.steps;
     kernel.window.array() *= window.step(by.window.transpose(), step, share).exp().transpose();
     kernel.map.reshaped().array() += map.step(by.map.reshaped().array(), step, share);

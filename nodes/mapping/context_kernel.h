@@ -42,9 +42,10 @@ struct KernelLearning {
   int steps = 40;
   int utterances = 30;
 };
-/// From window, noise and a map that is 1 to the kernel learnt; the map mixes only dimensions of the same of two
-/// groups, the first `heard` of x and the others.
+/// From window, noise and a map that is 1 to the kernel learnt; the map mixes only dimensions of one group. `groups`
+/// has the sizes of the first ones of x; all that is left is one.
 ContextKernel learn_kernel(const KernelLearning& learning, const std::vector<KernelExample>& utterances,
-                           ContextKernel kernel, Eigen::Index heard, Random& random, Context& context);
+                           ContextKernel kernel, const std::vector<Eigen::Index>& groups, Random& random,
+                           Context& context);
 
 }  // namespace talkgraph

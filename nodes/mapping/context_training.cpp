@@ -44,10 +44,12 @@ Eigen::RowVectorXd window_of(int reach, double width) {
 
 void set_kernel(const TrainContextGp& node, ContextGp& model) {
   const auto heard = model.audio_mean.size(), said = std::ssize(model.phones);
-  Eigen::VectorXd costs(heard + said);
-  costs.head(heard).setConstant(node.sound / static_cast<double>(heard));
-  costs.tail(said).setConstant(node.phones);
-  model.map = (0.5 * costs).cwiseSqrt().asDiagonal();
+  model.place_time = node.place > 0 ? node.place_time : 0;
+  Eigen::VectorXd costs(heard + said + (node.place > 0 ? 2 : 0));
+  costs.setConstant(node.place);
+  costs.head(heard).setConstant(0.5 * node.sound / static_cast<double>(heard));
+  costs.segment(heard, said).setConstant(0.5 * node.phones);
+  model.map = costs.cwiseSqrt().asDiagonal();
   model.window = window_of(node.reach, node.width);
   model.noise = node.noise;
 }

@@ -1,6 +1,7 @@
 #include "nodes/types/context_gp.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "nodes/types/stored_model.h"
@@ -18,7 +19,8 @@ void check(const ContextGp& g) {
   const Eigen::Index n = g.frames.rows(), d = g.mean.size(), heard = g.audio_mean.size(), m = std::ssize(g.inducing);
   stored.matrix("audio_mean", g.audio_mean, 1, heard);
   stored.matrix("audio_scale", g.audio_scale, 1, heard);
-  stored.matrix("map", g.map, heard + std::ssize(g.phones), g.map.cols());
+  stored.require(std::isfinite(g.place_time) && g.place_time >= 0, "place_time", "is not a time");
+  stored.matrix("map", g.map, heard + std::ssize(g.phones) + (g.place_time > 0 ? 2 : 0), g.map.cols());
   stored.matrix("window", g.window, 1, g.window.size());
   stored.require(g.window.size() % 2 == 1, "window", "has no middle");
   stored.require(all_within(g.lengths, n) && std::accumulate(g.lengths.begin(), g.lengths.end(), std::int64_t{0}) == n,
@@ -39,6 +41,7 @@ void fields(Archive& ar, ContextGp& g) {
   ar("audio_mean", g.audio_mean);
   ar("audio_scale", g.audio_scale);
   ar("phones", g.phones);
+  ar("place_time", g.place_time);
   ar("map", g.map);
   ar("window", g.window);
   ar("lengths", g.lengths);

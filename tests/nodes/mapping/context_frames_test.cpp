@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/nodes/mapping/context_corpus.h"
 
 namespace talkgraph {
@@ -16,6 +18,26 @@ TEST(ContextFrames, PhoneSharesByHand) {
   Eigen::MatrixXd expected(4, 2);
   expected << 1, 0, 0.25, 0.75, 0, 1, 0, 0;
   EXPECT_LT((shares - expected).norm(), 1e-12);
+}
+
+TEST(ContextFrames, PlacesByHand) {
+  const PhoneTrack ends{{{"b", 0.0, 0.1}, {"sil", 0.1, 0.4}}};
+  const Eigen::MatrixXd place = places(ends, track(Eigen::MatrixXd::Zero(4, 1)), 0.5);
+  Eigen::MatrixXd expected(4, 2);
+  expected << 1, std::exp(-0.16), std::exp(-0.08), std::exp(-0.08), std::exp(-0.16), 1, std::exp(-0.24), 1;
+  EXPECT_LT((place - expected).norm(), 1e-12);
+  const Eigen::MatrixXd silent = places({{{"sil", 0.0, 0.16}}}, track(Eigen::MatrixXd::Zero(4, 1)), 0.5);
+  EXPECT_NEAR(silent(3, 1), std::exp(-0.08), 1e-12);
+  EXPECT_EQ(places({}, track(Eigen::MatrixXd::Zero(0, 1)), 0.5).rows(), 0);
+}
+
+TEST(ContextFrames, JoinPlacesIfTheyAreCompared) {
+  ContextGp model;
+  model.audio_mean = model.audio_scale = Eigen::RowVectorXd::Ones(1);
+  model.place_time = 0.5;
+  model.map = Eigen::MatrixXd::Identity(3, 3);
+  const Track audio = track(Eigen::MatrixXd::Ones(4, 1));
+  EXPECT_EQ(context_frames(model, audio, phones, 3).rightCols(2), places(phones, audio, 0.5).topRows(3));
 }
 
 TEST(ContextFrames, ByHand) {

@@ -116,6 +116,26 @@ TEST(ContextGp, KnowsTheNextPhone) {
   EXPECT_NEAR(PredictContextGp{}(deaf, silent_sound, next).visual.values(2, 0), 0, 1e-9);
 }
 
+/// The same is heard and said all the time, but the head sinks as a recording goes on and rises where speech ends.
+TEST(ContextGp, KnowsThePlaceInTheRecording) {
+  ContextCorpus corpus;
+  const auto sound = [](int frames) { return track(Eigen::MatrixXd::Zero(frames, 1)); };
+  const auto nodding = [](int frames) {
+    Eigen::MatrixXd z(frames, 1);
+    for (int t = 0; t < frames; ++t) z(t, 0) = std::exp(-t / 10.0) + std::exp((t - frames) / 10.0);
+    return z;
+  };
+  for (const int frames : {60, 70, 80})
+    corpus.add(std::to_string(frames), sound(frames), said({{"aa", frames}}), track(nodding(frames)));
+  const auto off = [&](const TrainContextGp& node, int frames) {
+    const auto said_so = PredictContextGp{}(corpus.learn(node), sound(frames), said({{"aa", frames}}));
+    return (said_so.visual.values - nodding(frames)).cwiseAbs().maxCoeff();
+  };
+  EXPECT_LT(off({.reach = 2, .place = 4, .place_time = 0.4, .noise = 0.01}, 75), 0.1);
+  EXPECT_LT(off({.reach = 2, .place = 4, .place_time = 0.4, .noise = 0.01}, 200), 0.1);  // longer than all it learnt
+  EXPECT_GT(off({.reach = 2, .noise = 0.01}, 75), 0.5);
+}
+
 /// Of two streams of sound one moves the lips, of three phones two look alike.
 ContextCorpus with_noise_beside(int from, int to) {
   ContextCorpus corpus;
@@ -152,20 +172,25 @@ TEST(ContextGp, LearnsItsKernel) {
 /// As given, any two phones cost `phones`, a deviation of all dimensions half of `sound`.
 TEST(ContextGp, CostsAreThoseGiven) {
   const auto model = random_corpus().learn({.reach = 1, .width = 1, .sound = 0.6, .phones = 2});
-  const auto [phones, sound, window] = InspectContextGp{}(model);
+  const auto [phones, sound, place, window] = InspectContextGp{}(model);
   EXPECT_EQ(phones.rows, (std::vector<std::string>{"b - ih", "b - n", "ih - n"}));
   for (const auto& row : phones.cells) EXPECT_NEAR(row[0], 2, 1e-12);
   ASSERT_EQ(sound.rows, (std::vector<std::string>{"1", "2", "3"}));
   for (const auto& row : sound.cells) EXPECT_NEAR(row[0], 0.1, 1e-12);
   ASSERT_EQ(window.rows, (std::vector<std::string>{"-1", "0", "1"}));
   EXPECT_NEAR(window.cells[0][0], std::exp(-1) / (1 + 2 * std::exp(-1)), 1e-12);
+  EXPECT_EQ(place.rows.size(), 0u);
+  const auto placed = InspectContextGp{}(random_corpus().learn({.place = 3}));
+  ASSERT_EQ(placed.place.rows, (std::vector<std::string>{"its start", "the end of speech"}));
+  for (const auto& row : placed.place.cells) EXPECT_NEAR(row[0], 3, 1e-12);
+  EXPECT_EQ(placed.phones.rows, phones.rows);
   EXPECT_EQ(InspectContextGp{}(ContextGp{}).phones.rows.size(), 0u);
 }
 
 TEST(ContextGp, TellsWhatItHoldsAlike) {
   const auto model = with_noise_beside(0, 10).learn(
       {.reach = 1, .width = 1, .noise = 0.1, .kernel_utterances = 6, .inducing = 30}, 40);
-  const auto [phones, sound, window] = InspectContextGp{}(model);
+  const auto [phones, sound, place, window] = InspectContextGp{}(model);
   ASSERT_EQ(phones.rows.size(), 3u);
   EXPECT_EQ(phones.rows[0], "b - p");
   EXPECT_LT(phones.cells[0][0], phones.cells[1][0]);

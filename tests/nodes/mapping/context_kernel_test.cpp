@@ -130,7 +130,7 @@ TEST(LearnKernel, FindsWhatTells) {
   const ContextKernel start{Eigen::RowVector3d::Constant(1 / 3.0), Eigen::MatrixXd::Identity(dimension, dimension), 1};
   Context context;
   Random random(1), again(1), other(2);
-  const auto learnt = learn_kernel({60, 5}, all, start, 2, random, context);
+  const auto learnt = learn_kernel({60, 5}, all, start, {2}, random, context);
   EXPECT_LT(error_of(all, learnt).value, 0.5 * error_of(all, start).value);
   EXPECT_GT(learnt.window[1], 2 * learnt.window[0]);
   EXPECT_GT(learnt.window[1], 2 * learnt.window[2]);
@@ -139,8 +139,8 @@ TEST(LearnKernel, FindsWhatTells) {
   EXPECT_LT(learnt.noise, start.noise);
   EXPECT_TRUE(learnt.map.topRightCorner(2, 2).isZero());
   EXPECT_TRUE(learnt.map.bottomLeftCorner(2, 2).isZero());
-  EXPECT_EQ(learn_kernel({60, 5}, all, start, 2, again, context).map, learnt.map);
-  EXPECT_NE(learn_kernel({60, 5}, all, start, 2, other, context).map, learnt.map);
+  EXPECT_EQ(learn_kernel({60, 5}, all, start, {2}, again, context).map, learnt.map);
+  EXPECT_NE(learn_kernel({60, 5}, all, start, {2}, other, context).map, learnt.map);
 }
 
 TEST(LearnKernel, LeavesAsideWhatIsNoFeature) {
@@ -150,7 +150,7 @@ TEST(LearnKernel, LeavesAsideWhatIsNoFeature) {
   const ContextKernel start{Eigen::RowVector3d::Constant(1 / 3.0), Eigen::MatrixXd::Identity(dimension, dimension), 1};
   Context context;
   Random random(1);
-  const auto learnt = learn_kernel({10, 60}, all, start, 2, random, context);
+  const auto learnt = learn_kernel({10, 60}, all, start, {2}, random, context);
   EXPECT_EQ(learnt.map.row(1), start.map.row(1));
   EXPECT_TRUE(learnt.map.allFinite());
 }
