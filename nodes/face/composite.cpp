@@ -68,7 +68,7 @@ class Painter {
     const Pose& pose = track.poses[t];
     const Shape before = model_.shape(own), after = moved(before, look.shape);
     cv::Mat painted = frame.clone();
-    const cv::Rect part = surroundings(transform(pose, ring_), frame.size());
+    const cv::Rect part = around(transform(pose, ring_), frame.size());
     if (part.empty()) return painted;
     const Pose here{pose.scale, pose.angle, pose.dx - part.x, pose.dy - part.y};
     const Shape ring = transform(here, ring_), from = transform(here, before), to = transform(here, after);
@@ -78,16 +78,18 @@ class Painter {
     cv::remap(frame(part), bent, map, cv::noArray(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
     bent.convertTo(bent, CV_32FC3);
 
-    cv::Mat face_map = empty_map(part.size());
-    draw_map(face_map, to, raster_.points, model_.triangles);
-    blend(bent, face_map, track.gain[t], track.offset[t], model_.texture(own), look.texture);
+    const cv::Rect face = around(to, part.size());
+    cv::Mat face_map = empty_map(face.size());
+    draw_map(face_map, to.rowwise() - Eigen::RowVector2d(face.x, face.y), raster_.points, model_.triangles);
+    blend(bent(face), face_map, track.gain[t], track.offset[t], model_.texture(own), look.texture);
     bent.convertTo(painted(part), CV_8UC3);
     return painted;
   }
 
  private:
-  static cv::Rect surroundings(const Shape& ring, cv::Size size) {
-    const Eigen::RowVector2d low = ring.colwise().minCoeff(), high = ring.colwise().maxCoeff();
+  /// What of a picture the points enclose.
+  static cv::Rect around(const Shape& points, cv::Size size) {
+    const Eigen::RowVector2d low = points.colwise().minCoeff(), high = points.colwise().maxCoeff();
     const auto within = [](double v, int n) { return static_cast<int>(std::clamp(v, -1.0, n + 1.0)); };
     const cv::Point from(within(low.x() - 2, size.width), within(low.y() - 2, size.height)),
         to(within(high.x() + 3, size.width), within(high.y() + 3, size.height));
@@ -148,7 +150,7 @@ class Painter {
     return with_points(before + moves_.asDiagonal() * change, wanted, looks_.eye_points());
   }
 
-  void blend(cv::Mat& bent, const cv::Mat& face_map, double gain, double offset, const Eigen::VectorXf& own,
+  void blend(cv::Mat face, const cv::Mat& map, double gain, double offset, const Eigen::VectorXf& own,
              const Eigen::VectorXf& wanted) const {
     const auto g = static_cast<float>(gain);
     const Eigen::VectorXf change = g * (wanted - own);
@@ -159,17 +161,25 @@ class Painter {
       added -= step;
       painted -= step;
     }
-    cv::Mat keep, replace;
-    cv::remap(added, added, face_map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-    cv::remap(painted, painted, face_map, cv::noArray(), cv::INTER_CUBIC, cv::BORDER_CONSTANT);
-    cv::remap(keep_, keep, face_map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-    cv::remap(replace_, replace, face_map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-    for (int y = 0; y < bent.rows; ++y)
-      for (int x = 0; x < bent.cols; ++x) {
-        auto& pixel = bent.at<cv::Vec3f>(y, x);
+    const cv::Mat keep = on_face(keep_, map, cv::INTER_LINEAR), replace = on_face(replace_, map, cv::INTER_LINEAR);
+    const cv::Rect replaced = cv::boundingRect(replace > 0);
+    added = on_face(added, map, cv::INTER_LINEAR);
+    painted = on_face(painted, map(replaced), cv::INTER_CUBIC);
+    for (int y = 0; y < face.rows; ++y)
+      for (int x = 0; x < face.cols; ++x) {
+        auto& pixel = face.at<cv::Vec3f>(y, x);
         const float k = keep.at<float>(y, x), r = replace.at<float>(y, x);
-        if (k > 0 || r > 0) pixel += k * added.at<cv::Vec3f>(y, x) + r * (painted.at<cv::Vec3f>(y, x) - pixel);
+        const auto step = k > 0 ? k * added.at<cv::Vec3f>(y, x) : cv::Vec3f();
+        if (r > 0) pixel += r * (painted.at<cv::Vec3f>(y - replaced.y, x - replaced.x) - pixel);
+        pixel += step;
       }
+  }
+
+  /// A picture of the raster where the map shows it.
+  static cv::Mat on_face(const cv::Mat& picture, const cv::Mat& map, int interpolation) {
+    cv::Mat out;
+    if (!map.empty()) cv::remap(picture, out, map, cv::noArray(), interpolation, cv::BORDER_CONSTANT);
+    return out;
   }
 
   bool whole_;
@@ -295,7 +305,7 @@ Video CompositeFace::operator()(const AppearanceModel& model, const Track& param
 }
 
 void describe(Description<CompositeFace>& d) {
-  d.type("face.composite").version(5).summary("draws a synthesised face on the frames of a real clip");
+  d.type("face.composite").version(6).summary("draws a synthesised face on the frames of a real clip");
   d.source("Thesis §3.1.3, §6.3.5; docs/method.md §2");
   d.input("model", "of the face")
       .input("parameters", "appearance parameters c")
