@@ -193,17 +193,29 @@ std::string score_table(const Experiment& experiment, const OutputEstimates& est
                     lines);
 }
 
+/// Methods that others are tested against, by the tables of the graphs.
+std::vector<std::string> tested_against(const std::vector<Graph>& graphs) {
+  std::vector<std::string> methods;
+  for (const auto& graph : graphs)
+    for (const auto& node : graph.resolved["nodes"])
+      if (node.value("type", "") == "statistics.methods" && node.contains("params"))
+        if (const auto method = node["params"].value("against", ""); !method.empty()) add_once(methods, method);
+  return methods;
+}
+
 /// Says what the numbers behind ± and below the others are.
-std::string interval_note(const std::vector<Estimate>& estimates) {
+std::string interval_note(const std::vector<Estimate>& estimates, const std::vector<std::string>& against) {
   std::size_t repeats = 0, items = 0;
-  bool of_tables = false, behind = false;
+  bool of_tables = false, tested = false, behind = false;
   for (const auto& e : estimates) {
     if (e.over == Estimate::Over::items)
       items = std::max(items, e.n);
     else
       repeats = std::max(repeats, e.n);
     of_tables = of_tables || e.over == Estimate::Over::table || !std::isnan(e.p);
-    behind = behind || (e.measure.ends_with(" behind") && !std::isnan(e.p));
+    const bool of_best = e.measure.ends_with(" behind");
+    behind = behind || (of_best && !std::isnan(e.p));
+    tested = tested || (!of_best && !std::isnan(e.p));
   }
   std::string over, note;
   if (repeats > 1) over = fmt::format("{} repeats with seeds of their own", repeats);
@@ -217,6 +229,9 @@ std::string interval_note(const std::vector<Estimate>& estimates) {
     note +=
         "Of a table: after ± the standard deviation; below it, where the table gives them, the confidence interval of "
         "the mean, and p.";
+  if (tested && !against.empty())
+    note += escape_markup(fmt::format(" That p is of the signed-rank test against {}, sequence by sequence.",
+                                      fmt::join(against, " or ")));
   if (behind)
     note +=
         " Behind is behind the method of the best mean, with p of Wilcoxon's signed-rank test of the two, sequence by "
@@ -377,7 +392,7 @@ std::string html_results(const Experiment& experiment, const std::vector<Graph>&
                          const std::vector<TrialResult>& results, const std::string& folder) {
   const auto estimates = estimate(experiment, results);
   std::string html = settings(experiment);
-  if (!estimates.empty()) html += "<p>" + interval_note(estimates) + "</p>\n";
+  if (!estimates.empty()) html += "<p>" + interval_note(estimates, tested_against(graphs)) + "</p>\n";
   if (std::any_of(estimates.begin(), estimates.end(), [](const Estimate& e) { return e.partial; }))
     html += "<p>* Without items that failed: see the runs.</p>\n";
   for (const auto& missing : missing_measures(experiment, estimates)) html += "<p>" + escape_markup(missing) + "</p>\n";

@@ -154,6 +154,20 @@ TEST(Results, SayWhatBehindIsAndItsP) {
   EXPECT_THAT(page, HasSubstr("<td>0.125<br><small>p = 0.062</small></td>"));
 }
 
+TEST(Results, SayWhomMethodsAreTestedAgainst) {
+  Graph graph;
+  graph.resolved = {{"nodes",
+                     {{"methods", {{"type", "statistics.methods"}, {"params", {{"against", "old & tried"}}}}},
+                      {"variants", {{"type", "statistics.methods"}, {"params", {{"against", "old & tried"}}}}},
+                      {"plain", {{"type", "statistics.methods"}}}}}};
+  const auto page = [&](const std::string& measure) {
+    const auto of = result_of({{"scores", "", "ours", measure, 0.5}, {"scores", "", "ours", measure + " p", 0.25}});
+    return html_results(two_settings(), {graph, graph}, {of, {}, {}, {}}, "");
+  };
+  EXPECT_THAT(page("acc"), HasSubstr("test against old &amp; tried, sequence by sequence."));
+  EXPECT_THAT(page("acc behind"), Not(HasSubstr("against")));
+}
+
 TEST(Results, DeviationsWithoutIntervalsAreOfTheTableToo) {
   const auto e = two_settings();
   const std::vector<TrialResult> results = {
