@@ -25,7 +25,7 @@ inline constexpr EnumNames<SymbolKind, 2> enum_names<SymbolKind>{
 ///   ΔH(σw, w) = p(σw) Σ_σ' p(σ'|σw) ln(p(σ'|σw) / p(σ'|w)) ≥ keep,
 /// and on a phone σ it leads to the longest kept suffix of wσ.
 ///
-/// The defaults are chosen by perplexity on held-out recordings, GRID speaker s1 (docs/experiments.md): it is 4.52,
+/// The defaults are chosen by perplexity on held-out recordings, GRID speaker s1 (docs/results.md): it is 4.52,
 /// 3.79, 3.51 at order 1 to 3 and 3.53 from 5 on; 4.36, 3.92, 3.53, 3.49, 3.78 at keep = 1e-5, 1e-4, 4e-4, 1e-3, 3e-3;
 /// pruning what was seen twice or less costs a third of it.
 ///
