@@ -92,7 +92,8 @@ class Mean {
   double sum_ = 0, count_ = 0;
 };
 
-double decibels(double error) { return error > 0 ? std::min(100.0, 10 * std::log10(255 * 255 / error)) : 100; }
+/// Of a mean squared error, at most 100; NaN where there is none.
+double decibels(double error) { return std::isnan(error) ? NAN : std::min(100.0, 10 * std::log10(255 * 255 / error)); }
 
 double ratio(double drawn, double recorded) { return recorded > 0 ? drawn / recorded : NAN; }
 

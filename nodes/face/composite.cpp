@@ -152,6 +152,7 @@ class Painter {
 
   void blend(cv::Mat face, const cv::Mat& map, double gain, double offset, const Eigen::VectorXf& own,
              const Eigen::VectorXf& wanted) const {
+    if (face.empty()) return;
     const auto g = static_cast<float>(gain);
     const Eigen::VectorXf change = g * (wanted - own);
     const Eigen::VectorXf colour = (g * wanted).array() + static_cast<float>(offset);

@@ -77,6 +77,18 @@ TEST(CompositeFace, LeavesTheRestOfThePictureAlone) {
   EXPECT_LE(cv::norm(drawn(eyes), before(eyes), cv::NORM_INF), 2);
 }
 
+TEST(CompositeFace, MayLeaveThePicture) {
+  auto base = base_of(still(0.1, 1));
+  const cv::Mat before = base.frames.read_all()[0];
+  cv::Mat drawn;
+  for (double x = -before.cols; x <= 2 * before.cols; x += 10) {
+    base.track.poses[0].dx = x;
+    drawn = CompositeFace{}(model(), base.track.parameters, base, nullptr, nullptr).read_all().at(0);
+    ASSERT_EQ(drawn.size(), before.size());
+  }
+  EXPECT_EQ(cv::norm(drawn, before, cv::NORM_INF), 0);
+}
+
 TEST(CompositeFace, RunsAShortBaseBackAndForth) {
   const auto base = base_of(talking(3));
   Track p = base.track.parameters;
