@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "nodes/media/ffmpeg.h"
@@ -24,6 +26,22 @@ struct CloseSound {
   void operator()(SNDFILE* f) const { sf_close(f); }
 };
 using SoundHandle = std::unique_ptr<SNDFILE, CloseSound>;
+
+struct OpenedSound {
+  SoundHandle file;
+  SF_INFO info;
+  int error;  ///< why there is none
+  std::string why;
+};
+
+/// One thread after the other: libsndfile tells all of them in one place why it could not open a file.
+OpenedSound open_sound(const std::string& path, int mode, SF_INFO info) {
+  static std::mutex mutex;
+  const std::scoped_lock lock(mutex);
+  SoundHandle file(sf_open(path.c_str(), mode, &info));
+  const int error = file ? SF_ERR_NO_ERROR : sf_error(nullptr);
+  return {std::move(file), info, error, sf_strerror(nullptr)};
+}
 
 /// Bytes of sound that the file lacks of what its header promises, which libsndfile notes in its log:
 /// "data : 4000 (should be 2500)". The length of all chunks together matters where that of the data is not noted.
@@ -103,15 +121,14 @@ Audio read_audio(const std::string& path) {
   if (!fs::exists(path)) throw std::runtime_error(path + ": there is no such file");
   if (!fs::is_regular_file(path)) throw std::runtime_error(path + ": is not a file");
   if (fs::file_size(path) == 0) throw std::runtime_error(path + ": is empty");
-  SF_INFO info{};
-  const SoundHandle file(sf_open(path.c_str(), SFM_READ, &info));
+  const auto [file, info, error, why] = open_sound(path, SFM_READ, {});
   Audio audio;
   if (file)
     audio = read_by_sndfile(file.get(), info, path);
-  else if (sf_error(nullptr) == SF_ERR_UNRECOGNISED_FORMAT)
+  else if (error == SF_ERR_UNRECOGNISED_FORMAT)
     audio = ffmpeg_audio(path);
   else
-    throw std::runtime_error(fmt::format("{}: cannot be read as sound: {}", path, sf_strerror(nullptr)));
+    throw std::runtime_error(fmt::format("{}: cannot be read as sound: {}", path, why));
   check(audio, path);
   return audio;
 }
@@ -121,12 +138,12 @@ void write_audio(const std::string& path, const Audio& audio, WavFormat format) 
     throw std::invalid_argument(
         fmt::format("{}: a WAV file cannot hold {} samples per second; resample to a whole rate", path, audio.rate));
   if (!audio.samples.allFinite()) throw std::invalid_argument(path + ": the sound to write is not finite");
-  SF_INFO info{};
-  info.samplerate = static_cast<int>(audio.rate);
-  info.channels = 1;
-  info.format = sndfile_format(format);
-  const SoundHandle file(sf_open(path.c_str(), SFM_WRITE, &info));
-  if (!file) throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, sf_strerror(nullptr)));
+  SF_INFO wanted{};
+  wanted.samplerate = static_cast<int>(audio.rate);
+  wanted.channels = 1;
+  wanted.format = sndfile_format(format);
+  const auto [file, info, error, why] = open_sound(path, SFM_WRITE, wanted);
+  if (!file) throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, why));
   sf_command(file.get(), SFC_SET_CLIPPING, nullptr, SF_TRUE);
   sf_command(file.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);  // it holds the time of day
   const auto written = sf_write_double(file.get(), audio.samples.data(), audio.samples.size());

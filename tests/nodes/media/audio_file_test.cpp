@@ -2,7 +2,9 @@
 
 #include <sndfile.h>
 
+#include <atomic>
 #include <limits>
+#include <thread>
 
 #include "nodes/media/ffmpeg.h"
 #include "nodes/media/resample.h"
@@ -67,6 +69,20 @@ TEST_F(AudioFileTest, MissingEmptyAndForeignFiles) {
   EXPECT_THAT(error_of([&] { read_audio(write("text.wav", std::string(3000, 'x'))); }), HasSubstr("text.wav: "));
   write_samples(path("nothing.wav"), {}, 1, SF_FORMAT_WAV | SF_FORMAT_PCM_16);
   EXPECT_THAT(error_of([&] { read_audio(path("nothing.wav")); }), HasSubstr("not one sample"));
+}
+
+// libsndfile tells all threads in one place why it could not open a file.
+TEST_F(AudioFileTest, ThreadsDoNotMixUpWhyAFileCannotBeOpened) {
+  const std::string foreign = write("foreign.wav", std::string(5000, 'x')), sound = path("sound.wav");
+  write_samples(sound, {0.5, 0.25}, 1, SF_FORMAT_WAV | SF_FORMAT_DOUBLE);
+  const auto why = [&] { return error_of([&] { read_audio(foreign); }); };
+  const std::string alone = why();
+  std::atomic<bool> enough = false;
+  std::jthread other([&] {
+    while (!enough) read_audio(sound);
+  });
+  for (int i = 0; i < 500; ++i) EXPECT_EQ(why(), alone) << i;
+  enough = true;
 }
 
 TEST_F(AudioFileTest, TruncatedFilesAreRefused) {
