@@ -119,11 +119,12 @@ class Comparison {
  public:
   explicit Comparison(const ComparePictures& settings) : settings_(settings) {}
 
-  void add(const Frame& now, const Frame* before, const Shape& shape) {
+  /// Whether any of the face is in the picture; otherwise nothing counts.
+  bool add(const Frame& now, const Frame* before, const Shape& shape) {
     std::vector<int> all(static_cast<std::size_t>(shape.rows()));
     std::iota(all.begin(), all.end(), 0);
     const cv::Rect box = around(hull(shape, all), now.recorded.size());
-    if (box.empty()) return;
+    if (box.empty()) return false;
     const Shape here = shape.rowwise() - Eigen::RowVector2d(box.x, box.y);
     const auto outline = hull(here, all);
     const cv::Mat face = inside(outline, box.size()), mouth = inside(hull(here, settings_.mouth), box.size());
@@ -141,6 +142,7 @@ class Comparison {
     add_sharpness(recorded, drawn, hull(here, settings_.inner));
     recorded_.steps += steps_across(recorded, outline);
     drawn_.steps += steps_across(drawn, outline);
+    return true;
   }
 
   Scores scores() const {
@@ -200,9 +202,9 @@ std::optional<Scores> ComparePictures::operator()(const Video& recorded, const V
     ++seen;
     const bool counted = counts;
     const Shape& shape = landmarks.frames[t];
-    counts = !recorded.is_damaged(static_cast<std::int64_t>(t)) && shape.rows() > 0 && shape.allFinite();
+    counts = !recorded.is_damaged(static_cast<std::int64_t>(t)) && shape.rows() > 0 && shape.allFinite() &&
+             comparison.add(now, counted ? &before : nullptr, shape);
     if (!counts) continue;
-    comparison.add(now, counted ? &before : nullptr, shape);
     before = now;
     ++compared;
   }
@@ -214,7 +216,7 @@ std::optional<Scores> ComparePictures::operator()(const Video& recorded, const V
 
 void describe(Description<ComparePictures>& d) {
   d.type("evaluate.pictures")
-      .version(3)
+      .version(4)
       .summary("how near a drawn face comes to the recorded one: likeness, sharpness, jumps, seam");
   d.source("SSIM: Wang, Bovik, Sheikh & Simoncelli 2004").stored();
   d.input("recorded", "the clip")

@@ -13,7 +13,7 @@ namespace talkgraph {
 ///   sharpness  energy of the grey levels' gradient inside the lips, drawn over recorded, frames with parted lips
 ///   jumps      root mean square change from frame to frame in the mouth, drawn over recorded
 ///   seam       root mean square step across the face's edge (the hull's outline), drawn over recorded
-///   left_out   frames that do not count: damaged ones and those without landmarks
+///   left_out   frames that do not count: damaged ones, those without landmarks or with all of them outside the picture
 /// A ratio is NaN where nothing is recorded to compare with, the PSNR of equal pictures 100. Nothing is given without a
 /// frame that counts. Throws std::runtime_error if the videos differ in size, lengths differ by more than two frames,
 /// or a point is missing.

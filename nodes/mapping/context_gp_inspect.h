@@ -12,8 +12,7 @@ namespace talkgraph {
 ///   sound   a row a dimension of the sound, numbered from 1: what it costs where it is one deviation off all through
 ///           the window
 ///   place   what it costs to be at the start of the recording, or at the end of speech, where the other is far from
-///   it;
-///           no row if places are not compared
+///           it; no row if places are not compared
 ///   window  a row a neighbour, frames before it negative: its weight
 struct InspectContextGp {
   struct Tables {

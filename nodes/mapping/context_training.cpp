@@ -45,10 +45,10 @@ Eigen::RowVectorXd window_of(int reach, double width) {
 void set_kernel(const TrainContextGp& node, ContextGp& model) {
   const auto heard = model.audio_mean.size(), said = std::ssize(model.phones);
   model.place_time = node.place > 0 ? node.place_time : 0;
-  Eigen::VectorXd costs(heard + said + (node.place > 0 ? 2 : 0));
-  costs.setConstant(node.place);
-  costs.head(heard).setConstant(0.5 * node.sound / static_cast<double>(heard));
-  costs.segment(heard, said).setConstant(0.5 * node.phones);
+  const Eigen::Index placed = node.place > 0 ? 2 : 0;
+  Eigen::VectorXd costs(heard + said + placed);
+  costs << Eigen::VectorXd::Constant(heard, 0.5 * node.sound / static_cast<double>(heard)),
+      Eigen::VectorXd::Constant(said, 0.5 * node.phones), Eigen::VectorXd::Constant(placed, node.place);
   model.map = costs.cwiseSqrt().asDiagonal();
   model.window = window_of(node.reach, node.width);
   model.noise = node.noise;

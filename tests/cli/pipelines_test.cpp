@@ -193,6 +193,21 @@ TEST(Pipelines, ComparedInAStyleHaveTheSourcesSettingsInItsRowsAlone) {
   expect("compared-demnow.json", 4, "pitc", 0.001);
 }
 
+// They are laid over GRID's, so that the style stands in their file once more.
+TEST(Pipelines, OfClipsHaveTheSettingsOfTheTables) {
+  for (const std::string of : {"grid-s1", "lips"}) {
+    const Json clips = nodes_of("compared-clips-" + of + ".json"), table = nodes_of("compared-" + of + ".json");
+    int alike = 0;
+    for (const auto& [key, node] : clips.items()) {
+      if (!key.starts_with("face/") || !table.contains(key)) continue;
+      EXPECT_EQ(node.at("type"), table.at(key).at("type")) << of << ", " << key;
+      EXPECT_EQ(node.at("params"), table.at(key).at("params")) << of << ", " << key;
+      ++alike;
+    }
+    EXPECT_GT(alike, 250) << of;
+  }
+}
+
 TEST(Pipelines, OfMouthsHaveTheSettingsOfTheTable) {
   const Json mouths = nodes_of("mouth-measure-grid-s1.json"), faces = nodes_of("compared-grid-s1.json");
   std::set<std::string> methods;

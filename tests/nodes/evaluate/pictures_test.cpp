@@ -116,11 +116,20 @@ TEST(ComparePictures, DependsOnTheFaceAlone) {
 }
 
 TEST(ComparePictures, CountsNothingOfAFaceOutsideThePicture) {
-  auto outside = points();
-  for (auto& shape : outside.frames) shape.array() += 500;
-  const auto s = node(video(recorded_frames()), video(recorded_frames()), outside)->values;
-  for (const char* score : {"psnr_face", "psnr_mouth", "ssim_face", "ssim_mouth"})
-    EXPECT_TRUE(std::isnan(s.at(score))) << score;
+  auto leaves = points();
+  leaves.frames[0].array() += 500;
+  auto broken = recorded_frames();
+  broken[0].setTo(0);
+  const auto s = node(video(recorded_frames()), video(broken), leaves)->values;
+  EXPECT_EQ(s.at("psnr_face"), 100);
+  EXPECT_EQ(s.at("left_out"), 1);
+  auto half = points();
+  for (auto& shape : half.frames) shape.col(0).array() += 70;  // the mouth is outside
+  const auto of_half = node(video(recorded_frames()), video(recorded_frames()), half)->values;
+  EXPECT_EQ(of_half.at("psnr_face"), 100);
+  EXPECT_TRUE(std::isnan(of_half.at("psnr_mouth")));
+  for (auto& shape : leaves.frames) shape.array() += 500;
+  EXPECT_FALSE(node(video(recorded_frames()), video(recorded_frames()), leaves));
 }
 
 TEST(ComparePictures, LeavesDamagedFramesOut) {

@@ -139,6 +139,10 @@ TEST(LearnKernel, FindsWhatTells) {
   EXPECT_LT(learnt.noise, start.noise);
   EXPECT_TRUE(learnt.map.topRightCorner(2, 2).isZero());
   EXPECT_TRUE(learnt.map.bottomLeftCorner(2, 2).isZero());
+  const Eigen::MatrixXd of_three = learn_kernel({10, 5}, all, start, {2, 1}, random, context).map;
+  EXPECT_EQ(of_three(2, 3), 0);
+  EXPECT_EQ(of_three(3, 2), 0);
+  EXPECT_NE(of_three(0, 1), 0);
   EXPECT_EQ(learn_kernel({60, 5}, all, start, {2}, again, context).map, learnt.map);
   EXPECT_NE(learn_kernel({60, 5}, all, start, {2}, other, context).map, learnt.map);
 }
