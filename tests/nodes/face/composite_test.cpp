@@ -153,16 +153,16 @@ TEST(FaceShapes, HasNoLandmarksWhereTheFaceWasLost) {
 struct Clips {
   Collected<Video> videos;
   Collected<FaceTrack> tracks;
-  void add(std::string key, std::vector<std::int64_t> lost, double residual, double gain = 1000) {
+  void add(const std::string& key, const std::vector<std::int64_t>& lost, double residual, double gain = 1000) {
     const auto frames = static_cast<int>(lost.size());
     auto t = track(still(0.5, frames));
-    t.lost = std::move(lost);
+    t.lost = lost;
     t.residual.assign(t.lost.size(), residual);
     t.gain.assign(t.lost.size(), gain);
     videos.add(key, still(0.5, frames, key));
     tracks.add(key, t);
   }
-  std::string chosen(ChooseBase node) const { return node(videos, tracks).frames.source->name(); }
+  std::string chosen(const ChooseBase& node) const { return node(videos, tracks).frames.source->name(); }
 };
 
 TEST(ChooseBase, TakesTheBestFittedOneThatIsLongEnough) {
@@ -236,8 +236,8 @@ TEST(Crop, HoldsThePointsOfEveryFrame) {
   const auto frames = part.read_all();
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_EQ(frames[2].at<cv::Vec3b>(0, 0), cv::Vec3b(17, 7));
-  EXPECT_EQ(Crop({1}, 0)(video, corners({{20, 10}, {25, 15}})).read_all()[0].at<cv::Vec3b>(0, 0), cv::Vec3b(30, 14));
-  EXPECT_EQ(Crop({}, 10)(video, corners({{20, 10}})).source->size(), cv::Size(60, 40));
+  EXPECT_EQ((Crop{{1}, 0})(video, corners({{20, 10}, {25, 15}})).read_all()[0].at<cv::Vec3b>(0, 0), cv::Vec3b(30, 14));
+  EXPECT_EQ((Crop{{}, 10})(video, corners({{20, 10}})).source->size(), cv::Size(60, 40));
   EXPECT_NE(part.source->key(), video.source->key());
 }
 
