@@ -88,11 +88,12 @@ struct FilterStep {
   Eigen::MatrixXd covariance;  ///< given this frame too
 };
 
-FilterStep filter_step(const Whitened& white, const FilterStep* before, bool observed) {
+/// `before` is the covariance of the state before, null for the first.
+FilterStep filter_step(const Whitened& white, const Eigen::MatrixXd* before, bool observed) {
   const Lds& model = white.model;
   FilterStep step;
   step.predicted =
-      before ? root_of(model.prediction * before->covariance * model.prediction.transpose() + model.prediction_noise,
+      before ? root_of(model.prediction * *before * model.prediction.transpose() + model.prediction_noise,
                        "a predicted state")
              : root_of(model.first_covariance, "the first state");
   if (!observed) {
@@ -112,7 +113,7 @@ std::vector<FilterStep> filter_steps(const std::vector<const Whitened*>& given_b
                                      const std::vector<std::int64_t>& lost) {
   std::vector<FilterStep> steps;
   for (std::size_t t = 0; t < given_by.size(); ++t)
-    steps.push_back(filter_step(*given_by[t], t ? &steps.back() : nullptr,
+    steps.push_back(filter_step(*given_by[t], t ? &steps.back().covariance : nullptr,
                                 !std::binary_search(lost.begin(), lost.end(), static_cast<std::int64_t>(t))));
   return steps;
 }
@@ -122,26 +123,32 @@ struct Filtered {
   double log_likelihood = 0;
 };
 
+Eigen::VectorXd predicted_mean(const Lds& model, const Eigen::VectorXd& before) {
+  return model.prediction * before + model.offset;
+}
+
+/// Moves the mean of a predicted state to that given its frame, in units of the noise; log-likelihood of the frame.
+double observe(const Whitened& white, const FilterStep& step, const Eigen::VectorXd& frame, Eigen::VectorXd& mean) {
+  Eigen::VectorXd error = frame - white.observation * mean;
+  const Eigen::VectorXd correction = step.inner.solve(step.root.transpose() * (white.observation.transpose() * error));
+  mean += step.root * correction;
+  error -= white.observation * (step.root * correction);
+  const double constant = static_cast<double>(frame.size()) * std::log(2 * std::numbers::pi);
+  return -0.5 * (white.log_determinant + constant + 2 * step.inner.matrixLLT().diagonal().array().log().sum() +
+                 error.squaredNorm() + correction.squaredNorm());
+}
+
 Filtered filtered(const WhitenedFrames& frames, const std::vector<FilterStep>& steps) {
-  const double constant = static_cast<double>(frames.columns.rows()) * std::log(2 * std::numbers::pi);
   const Eigen::Index d = frames.given_by.front()->model.states();
   Filtered f{Eigen::MatrixXd(frames.columns.cols(), d), Eigen::MatrixXd(frames.columns.cols(), d)};
   for (Eigen::Index t = 0; t < frames.columns.cols(); ++t) {
     const Whitened& white = *frames.given_by[static_cast<std::size_t>(t)];
     const FilterStep& step = steps[static_cast<std::size_t>(t)];
-    const Eigen::VectorXd predicted =
-        t == 0 ? white.model.first_mean
-               : Eigen::VectorXd(white.model.prediction * f.means.row(t - 1).transpose() + white.model.offset);
-    f.predicted.row(t) = f.means.row(t) = predicted.transpose();
-    if (step.root.size() == 0) continue;
-    Eigen::VectorXd error = frames.columns.col(t) - white.observation * predicted;
-    const Eigen::VectorXd correction =
-        step.inner.solve(step.root.transpose() * (white.observation.transpose() * error));
-    f.means.row(t) = (predicted + step.root * correction).transpose();
-    error -= white.observation * (step.root * correction);
-    f.log_likelihood -=
-        0.5 * (white.log_determinant + constant + 2 * step.inner.matrixLLT().diagonal().array().log().sum() +
-               error.squaredNorm() + correction.squaredNorm());
+    Eigen::VectorXd mean =
+        t == 0 ? white.model.first_mean : predicted_mean(white.model, f.means.row(t - 1).transpose());
+    f.predicted.row(t) = mean.transpose();
+    if (step.root.size() > 0) f.log_likelihood += observe(white, step, frames.columns.col(t), mean);
+    f.means.row(t) = mean.transpose();
   }
   return f;
 }
@@ -244,10 +251,26 @@ LdsPosterior LdsSmoother::operator()(const Eigen::MatrixXd& frames) {
   const auto& given_by = whitened.given_by;
   auto& filter = steps_->filter;
   while (filter.size() < given_by.size())
-    filter.push_back(filter_step(*given_by[0], filter.empty() ? nullptr : &filter.back(), true));
+    filter.push_back(filter_step(*given_by[0], filter.empty() ? nullptr : &filter.back().covariance, true));
   auto& of_length = steps_->smoother[given_by.size()];
   if (of_length.covariances.empty()) of_length = smoother_steps(given_by, filter);
   return smoothed(filtered(whitened, filter), of_length);
+}
+
+struct LdsFilter::System {
+  Whitened white;
+};
+
+LdsFilter::LdsFilter(const Lds& model) : system_(std::make_unique<System>(Whitened(model))) {}
+LdsFilter::LdsFilter(LdsFilter&&) noexcept = default;
+LdsFilter::~LdsFilter() = default;
+
+LdsBelief LdsFilter::operator()(const LdsBelief* before, const Eigen::RowVectorXd* frame) const {
+  const Whitened& white = system_->white;
+  const FilterStep step = filter_step(white, before ? &before->covariance : nullptr, frame);
+  LdsBelief belief{before ? predicted_mean(white.model, before->mean) : white.model.first_mean, step.covariance, 0};
+  if (frame) belief.log_likelihood = observe(white, step, white.columns(*frame), belief.mean);
+  return belief;
 }
 
 LdsPosterior kalman_filter(const LdsRegimes& regimes, const Eigen::MatrixXd& frames,

@@ -33,7 +33,27 @@ LdsPosterior kalman_filter(const LdsRegimes& regimes, const Eigen::MatrixXd& fra
 LdsPosterior kalman_smoother(const LdsRegimes& regimes, const Eigen::MatrixXd& frames,
                              const std::vector<std::int64_t>& lost = {});
 
-/// The same for many sequences of one system, which must outlive it, without lost frames: gains and covariances do not
+/// What a filter knows of the state of one frame.
+struct LdsBelief {
+  Eigen::VectorXd mean;        ///< d
+  Eigen::MatrixXd covariance;  ///< d × d
+  double log_likelihood = 0;   ///< of the frame, given those before
+};
+/// The filter's step alone, for those who choose the system of each frame as they go. The system must outlive it.
+class LdsFilter {
+ public:
+  explicit LdsFilter(const Lds& model);
+  LdsFilter(LdsFilter&&) noexcept;
+  ~LdsFilter();
+  /// Of a frame, null if it is lost, and what was known of the one before, null for a first frame.
+  LdsBelief operator()(const LdsBelief* before, const Eigen::RowVectorXd* frame) const;
+
+ private:
+  struct System;
+  std::unique_ptr<System> system_;
+};
+
+/// The smoother for many sequences of one system, which must outlive it, without lost frames: gains and covariances do not
 /// depend on the frames, and are computed once for sequences of equal length, the filter's for all.
 class LdsSmoother {
  public:

@@ -8,6 +8,7 @@
 #include "nodes/latent/normal.h"
 #include "nodes/latent/sequences.h"
 #include "nodes/mapping/dpds_objective.h"
+#include "nodes/mapping/phone_chain.h"
 #include "nodes/mapping/phone_inventory.h"
 #include "nodes/mapping/scaling.h"
 #include "nodes/types/paired.h"
@@ -25,18 +26,6 @@ StateRuns runs_of(const std::vector<std::string>& phones, const std::vector<std:
     for (std::int64_t t = 0; t < length; ++t) sequence.push_back(place_of(phones, *label++));
   }
   return runs;
-}
-
-void count_transitions(Dpds& model, const StateRuns& runs) {
-  model.start.setOnes(runs.states);
-  model.transitions.setOnes(runs.states, runs.states);
-  for (const auto& states : runs.sequences) {
-    model.start[states[0]] += 1;
-    for (std::size_t t = 1; t < states.size(); ++t) model.transitions(states[t - 1], states[t]) += 1;
-  }
-  model.start /= model.start.sum();
-  const Eigen::VectorXd sums = model.transitions.rowwise().sum();
-  model.transitions = sums.cwiseInverse().asDiagonal() * model.transitions;
 }
 
 /// What a state begins with that begins no sequence: the mean of its frames.
@@ -71,9 +60,9 @@ Dpds TrainDpds::operator()(const Collected<Track>& visual, const Collected<Frame
   const Sequences data = measured_runs(training.tracks);
   Dpds model;
   model.visual = scaling_of(data.frames);
-  model.phones = phone_inventory(training.labels);
+  model.chain = phone_chain(training.labels, data.lengths);
   const Eigen::MatrixXd frames = scaled(model.visual, data.frames);
-  const StateRuns runs = runs_of(model.phones, training.labels, data.lengths);
+  const StateRuns runs = runs_of(model.chain.phones, training.labels, data.lengths);
   const Eigen::Index dims = frames.cols();
   const Eigen::VectorXd floors = variance_floors(frames, floor);
   model.first.resize(runs.states, dims);
@@ -99,7 +88,6 @@ Dpds TrainDpds::operator()(const Collected<Track>& visual, const Collected<Frame
     context.progress(static_cast<double>(d + 1) / static_cast<double>(dims));
   }
   fill_first(model, runs, frames);
-  count_transitions(model, runs);
   context.log(
       fmt::format("DPDS of {} phones, {} frames: log-likelihood {:.8g}, {:.5g} a frame, {} of {} dimensions "
                   "converged",

@@ -19,11 +19,11 @@ class ApproximateViterbi {
  public:
   explicit ApproximateViterbi(const Dpds& model)
       : model_(model),
-        transitions_(model.transitions.array().log()),
+        transitions_(model.chain.transitions.array().log()),
         constant_((2 * std::numbers::pi * model.noise.array()).log().sum()),
         precision_(model.noise.cwiseInverse()) {}
 
-  Front begin() const { return {model_.start.array().log(), model_.first}; }
+  Front begin() const { return {model_.chain.start.array().log(), model_.first}; }
 
   /// The paths one frame on, and the state that each came from.
   Front advance(const Front& front, std::vector<Eigen::Index>& from) const {
@@ -57,7 +57,7 @@ FrameLabels DecodeDpds::operator()(const Dpds& model, const Track& visual) const
   require_frames_of(visual, model.first.cols(), "the deterministic process dynamical system");
   const Eigen::MatrixXd frames = scaled(model.visual, visual.values);
   const ApproximateViterbi viterbi(model);
-  const std::vector<Eigen::Index> none(model.phones.size());
+  const std::vector<Eigen::Index> none(model.chain.phones.size());
   std::vector<std::vector<Eigen::Index>> from(static_cast<std::size_t>(frames.rows()), none);
   Front front = viterbi.begin();
   for (Eigen::Index t = 0; t < frames.rows(); ++t) {
@@ -68,7 +68,7 @@ FrameLabels DecodeDpds::operator()(const Dpds& model, const Track& visual) const
   front.scores.maxCoeff(&state);
   decoded.labels.resize(from.size());
   for (std::size_t t = from.size(); t-- > 0;) {
-    decoded.labels[t] = model.phones[static_cast<std::size_t>(state)];
+    decoded.labels[t] = model.chain.phones[static_cast<std::size_t>(state)];
     state = from[t][static_cast<std::size_t>(state)];
   }
   return decoded;

@@ -12,7 +12,7 @@ Track SynthesiseDpds::operator()(const Dpds& model, const Track& audio, const Fr
   const Eigen::Index dims = model.first.cols();
   Eigen::MatrixXd x = Eigen::MatrixXd::Zero(frames, dims);
   for (Eigen::Index t = 0; t < frames; ++t) {
-    const Eigen::Index state = place_of(model.phones, labels.labels[static_cast<std::size_t>(t)]);
+    const Eigen::Index state = place_of(model.chain.phones, labels.labels[static_cast<std::size_t>(t)]);
     const bool known = state < model.first.rows();
     if (t == 0 && known) x.row(t) = model.first.row(state);
     if (t > 0) x.row(t) = x.row(t - 1);

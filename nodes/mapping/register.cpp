@@ -15,6 +15,7 @@
 #include "nodes/mapping/shared_lds.h"
 #include "nodes/mapping/shared_lds_synthesise.h"
 #include "nodes/mapping/slds.h"
+#include "nodes/mapping/slds_decode.h"
 #include "nodes/mapping/slds_synthesise.h"
 #include "nodes/mapping/ssgpdm.h"
 #include "nodes/mapping/ssgpdm_synthesise.h"
@@ -29,6 +30,7 @@ namespace talkgraph {
 void register_mapping(Registry& registry) {
   registry.add<AssembleSsgpdm>();
   registry.add<DecodeDpds>();
+  registry.add<DecodeSlds>();
   registry.add<EstimateOffsets>();
   registry.add<InspectContextGp>();
   registry.add<PredictContextGp>();

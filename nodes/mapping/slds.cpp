@@ -7,6 +7,7 @@
 #include "nodes/latent/em.h"
 #include "nodes/latent/lds.h"
 #include "nodes/latent/lds_expectations.h"
+#include "nodes/mapping/phone_chain.h"
 #include "nodes/mapping/scaling.h"
 #include "nodes/types/paired.h"
 
@@ -85,6 +86,7 @@ Slds TrainSlds::operator()(const Collected<Track>& audio, const Collected<Track>
   data.frames = scaled(both, data.frames);
   Slds model;
   std::tie(model.audio, model.visual) = split(both, heard);
+  model.chain = phone_chain(training.labels, data.lengths);
   TrainLds train;
   train.latent_dimension = latent_dimension;
   train.covariance = covariance;

@@ -26,6 +26,7 @@ void fields(Archive& ar, Slds& s) {
   ar("visual", s.visual);
   ar("phones", s.phones);
   ar("shared", s.shared);
+  ar("chain", s.chain);
   ar("trace", s.trace);
   if (ar.loading()) check(s);
 }

@@ -21,7 +21,7 @@ using testing::gaussian;
 Dpds truth() {
   Dpds model;
   model.visual = {Eigen::RowVector2d(3, -1), Eigen::RowVector2d(2, 0.5)};
-  model.phones = {"a", "b", "c"};
+  model.chain.phones = {"a", "b", "c"};
   model.first.resize(3, 2);
   model.first << 1, -1, -2, 1, 0, 0;
   model.prediction.resize(3, 2);
@@ -29,9 +29,9 @@ Dpds truth() {
   model.offset.resize(3, 2);
   model.offset << 0.4, -0.6, -1, 1, 0.1, 0.5;
   model.noise = Eigen::RowVector2d(0.02, 0.05);
-  model.start = Eigen::Vector3d(0.5, 0.49, 0.01);
-  model.transitions.resize(3, 3);
-  model.transitions << 0.7, 0.2, 0.1, 0.2, 0.7, 0.1, 0.2, 0.2, 0.6;
+  model.chain.start = Eigen::Vector3d(0.5, 0.49, 0.01);
+  model.chain.transitions.resize(3, 3);
+  model.chain.transitions << 0.7, 0.2, 0.1, 0.2, 0.7, 0.1, 0.2, 0.2, 0.6;
   return model;
 }
 
@@ -45,8 +45,8 @@ FrameLabels draw_labels(const Dpds& model, int length, Random& random) {
   FrameLabels labels;
   Eigen::Index state = random.uniform() < 0.5 ? 0 : 1;
   for (int t = 0; t < length; ++t) {
-    if (t > 0) state = draw(model.transitions.row(state));
-    labels.labels.push_back(model.phones[static_cast<std::size_t>(state)]);
+    if (t > 0) state = draw(model.chain.transitions.row(state));
+    labels.labels.push_back(model.chain.phones[static_cast<std::size_t>(state)]);
   }
   return labels;
 }
@@ -125,9 +125,9 @@ TEST(Dpds, RecoversTheModelItsDataWereDrawnFrom) {
     TrainDpds train;
     train.bound = bound;
     const Dpds model = train(corpus.visual, corpus.labels, context);
-    EXPECT_EQ(model.phones, truth().phones);
+    EXPECT_EQ(model.chain.phones, truth().chain.phones);
     EXPECT_LT((model.prediction - truth().prediction).cwiseAbs().maxCoeff(), 0.05);
-    EXPECT_LT((model.transitions - truth().transitions).cwiseAbs().maxCoeff(), 0.05);
+    EXPECT_LT((model.chain.transitions - truth().chain.transitions).cwiseAbs().maxCoeff(), 0.05);
     EXPECT_LT(testing::largest_fall(model.trace), 1e-12);
     EXPECT_GT(model.trace.size(), 3U);
     const Corpus unseen = sample(truth(), 10, 60, false, 2);
@@ -149,11 +149,11 @@ double best_score(const Dpds& model, const Eigen::MatrixXd& frames, std::vector<
       s = static_cast<Eigen::Index>(rest % 3);
       rest /= 3;
     }
-    double score = std::log(model.start[states[0]]);
+    double score = std::log(model.chain.start[states[0]]);
     Eigen::RowVectorXd x = model.first.row(states[0]);
     for (std::size_t t = 0; t < length; ++t) {
       if (t > 0) {
-        score += std::log(model.transitions(states[t - 1], states[t]));
+        score += std::log(model.chain.transitions(states[t - 1], states[t]));
         x = x.cwiseProduct(model.prediction.row(states[t])) + model.offset.row(states[t]);
       }
       const Eigen::RowVectorXd error = x - frames.row(static_cast<Eigen::Index>(t));
@@ -177,7 +177,7 @@ TEST(DpdsDecode, FindsThePhonesThatASearchOfAllSequencesFinds) {
     best_score(model, corpus.visual[i].values, best);
     const FrameLabels found = DecodeDpds{}(model, corpus.visual[i]);
     for (std::size_t t = 0; t < 7; ++t, ++total) {
-      agree += found.labels[t] == model.phones[static_cast<std::size_t>(best[t])];
+      agree += found.labels[t] == model.chain.phones[static_cast<std::size_t>(best[t])];
       right += found.labels[t] == corpus.labels[i].labels[t];
     }
   }

@@ -5,9 +5,12 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "nodes/latent/lds.h"
+#include "nodes/mapping/slds_decode.h"
 #include "nodes/mapping/slds_synthesise.h"
+#include "nodes/types/paired.h"
 #include "tests/nodes/latent/gaussian.h"
 
 namespace talkgraph {
@@ -38,6 +41,8 @@ Slds truth() {
     model.phones[turn > 0 ? "a" : "b"] = m;
   }
   model.shared = model.phones["a"];
+  model.chain = {{"a", "b"}, Eigen::Vector2d(0.5, 0.5), Eigen::MatrixXd(2, 2)};
+  model.chain.transitions << 0.8, 0.2, 0.2, 0.8;
   return model;
 }
 
@@ -177,6 +182,104 @@ TEST(Slds, PhonesOfFewFramesAndUnknownOnesHaveTheSystemOfAll) {
   EXPECT_EQ(&system_of(more, "c"), &more.phones.at("c"));
   EXPECT_NE(system_of(more, "c").prediction, more.shared.prediction);
   EXPECT_TRUE(SynthesiseSlds{}(more, corpus.audio[0], {std::vector<std::string>(40, "x"), 25}).values.allFinite());
+}
+
+/// ln p(frames, phones) of all sequences of phones, one by one.
+double best_score(const Slds& model, SldsStream stream, const Track& track, std::vector<std::string>& best) {
+  const bool audio = stream == SldsStream::audio;
+  const Scaling& scaling = audio ? model.audio : model.visual;
+  const Eigen::MatrixXd frames =
+      (track.values.rowwise() - scaling.mean) * scaling.deviation.cwiseInverse().asDiagonal();
+  std::map<std::string, Lds> systems;
+  for (const auto& [phone, system] : model.phones)
+    systems[phone] = audio ? observed_part(system, 0, heard) : observed_part(system, system.dimension() - seen, seen);
+  double most = -std::numeric_limits<double>::infinity();
+  for (unsigned code = 0; code < 1U << frames.rows(); ++code) {
+    std::vector<std::string> phones;
+    LdsRegimes regimes;
+    double score = 0;
+    for (unsigned t = 0; t < frames.rows(); ++t) {
+      const Eigen::Index k = code >> t & 1U;
+      score += std::log(t == 0 ? model.chain.start[k] : model.chain.transitions(code >> (t - 1) & 1U, k));
+      phones.push_back(model.chain.phones[static_cast<std::size_t>(k)]);
+      regimes.push_back(&systems.at(phones.back()));
+    }
+    score += kalman_filter(regimes, frames).log_likelihood;
+    if (score <= most) continue;
+    most = score;
+    best = phones;
+  }
+  return most;
+}
+
+TEST(SldsDecode, FindsThePhonesThatASearchOfAllSequencesFinds) {
+  Context context;
+  Slds model = truth();
+  model.phones["b"].offset = -3 * model.phones["a"].offset;
+  const Corpus corpus = sample(model, 10, 9, 4);
+  for (const auto stream : {SldsStream::visual, SldsStream::audio})
+    for (const Slds& m : {model, of_face(model)}) {
+      if (stream == SldsStream::audio && m.audio.mean.size() == 0) continue;
+      int agree = 0, total = 0;
+      for (std::size_t i = 0; i < 10; ++i) {
+        const Track& track = stream == SldsStream::audio ? corpus.audio[i] : corpus.visual[i];
+        std::vector<std::string> best;
+        best_score(m, stream, track, best);
+        const FrameLabels found = DecodeSlds{stream}(m, track, context);
+        for (std::size_t t = 0; t < best.size(); ++t, ++total) agree += found.labels[t] == best[t];
+      }
+      EXPECT_GE(agree, 0.95 * total);
+    }
+}
+
+TEST(SldsDecode, FindsPhonesAsWellAsTheModelItsDataWereDrawnFrom) {
+  Context context;
+  Slds model = truth();
+  model.phones["a"].offset = Eigen::Vector2d(1, 1);
+  model.phones["b"].offset = Eigen::Vector2d(-1, -1);
+  const Corpus corpus = sample(model, 20, 60, 9), unseen = sample(model, 5, 60, 1'000'000);
+  const Slds learnt = node(true)(corpus.audio, corpus.visual, corpus.labels, context);
+  EXPECT_EQ(learnt.chain.phones, model.chain.phones);
+  EXPECT_LT((learnt.chain.transitions - model.chain.transitions).cwiseAbs().maxCoeff(), 0.05);
+  for (const auto stream : {SldsStream::visual, SldsStream::audio}) {
+    const auto right = [&](const Slds& by) {
+      int count = 0;
+      for (std::size_t i = 0; i < 5; ++i) {
+        const Track& track = stream == SldsStream::audio ? unseen.audio[i] : unseen.visual[i];
+        const FrameLabels found = DecodeSlds{stream}(by, track, context);
+        for (std::size_t t = 0; t < 60; ++t) count += found.labels[t] == unseen.labels[i].labels[t];
+      }
+      return count;
+    };
+    EXPECT_GE(right(model), 270);
+    EXPECT_GE(right(learnt), right(model) - 5);
+  }
+}
+
+TEST(SldsDecode, BridgesLostFrames) {
+  Context context;
+  const Corpus corpus = sample(truth(), 1, 30, 4);
+  Track face = corpus.visual[0];
+  const FrameLabels whole = DecodeSlds{}(truth(), face, context);
+  face.values.row(10).setConstant(1e9);
+  face.lost = {10};
+  const FrameLabels bridged = DecodeSlds{}(truth(), face, context);
+  int same = 0;
+  for (std::size_t t = 0; t < 30; ++t) same += whole.labels[t] == bridged.labels[t];
+  EXPECT_GE(same, 27);
+  EXPECT_EQ(bridged.rate, face.rate);
+}
+
+TEST(SldsDecode, RefusesWhatItCannotUse) {
+  Context context;
+  const Corpus corpus = sample(truth(), 1, 5, 4);
+  Track face = corpus.visual[0];
+  EXPECT_EQ(DecodeSlds{}(truth(), beginning(face, 1), context).labels.size(), 1U);
+  EXPECT_TRUE(DecodeSlds{}(truth(), beginning(face, 0), context).labels.empty());
+  EXPECT_THROW(DecodeSlds{SldsStream::audio}(truth(), face, context), std::runtime_error);
+  EXPECT_THROW(DecodeSlds{SldsStream::audio}(of_face(truth()), corpus.audio[0], context), std::runtime_error);
+  face.values(2, 1) = NAN;
+  EXPECT_THROW(DecodeSlds{}(truth(), face, context), std::runtime_error);
 }
 
 TEST(Slds, LearnsNothingFromLostFramesAndBridgesLostSound) {

@@ -13,6 +13,7 @@
 #include "nodes/mapping/shared_lds.h"
 #include "nodes/mapping/shared_lds_synthesise.h"
 #include "nodes/mapping/slds.h"
+#include "nodes/mapping/slds_decode.h"
 #include "nodes/mapping/slds_synthesise.h"
 #include "nodes/mapping/trajectory_hmm.h"
 #include "nodes/mapping/trajectory_hmm_synthesise.h"
@@ -116,7 +117,12 @@ TEST_F(StoredMappings, ThatAreDynamicalSystemsFitTogetherOrAreRefused) {
     switching.sound = sound;
     check<Slds>(
         switching(audio, visual, labels, context),
-        [&](const Slds& m) { return SynthesiseSlds{}(m, heard, labels[0]).values; }, 60);
+        [&](const Slds& m) -> Eigen::MatrixXd {
+          const Track face = SynthesiseSlds{}(m, heard, labels[0]);
+          EXPECT_EQ(DecodeSlds{}(m, face, context).labels.size(), labels[0].labels.size());
+          return face.values;
+        },
+        60);
   }
   const auto use_dpds = [&](const Dpds& m) -> Eigen::MatrixXd {
     const Track face = SynthesiseDpds{}(m, heard, labels[0]);

@@ -1,0 +1,109 @@
+#include "nodes/mapping/slds_decode.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "nodes/latent/lds.h"
+#include "nodes/latent/sequences.h"
+#include "nodes/mapping/scaling.h"
+#include "nodes/mapping/slds.h"
+
+namespace talkgraph {
+
+namespace {
+
+/// The likeliest path to a phone of a frame: what a filter along it knows of the state, and its score.
+struct Path {
+  LdsBelief belief;
+  double score = 0;  ///< log-likelihood of the frames, and log-probability of the phones
+};
+
+class ApproximateViterbi {
+ public:
+  ApproximateViterbi(const Slds& model, SldsStream stream)
+      : start_(model.chain.start.array().log()), transitions_(model.chain.transitions.array().log()) {
+    const Eigen::Index heard = model.audio.mean.size(), seen = model.visual.mean.size();
+    systems_.reserve(model.chain.phones.size());
+    for (const std::string& phone : model.chain.phones) {
+      const Lds& system = system_of(model, phone);
+      systems_.push_back(stream == SldsStream::audio ? observed_part(system, 0, heard)
+                                                     : observed_part(system, heard, seen));
+      filters_.emplace_back(systems_.back());
+    }
+  }
+
+  std::vector<Path> begin(const Eigen::RowVectorXd* frame) const {
+    std::vector<Path> paths;
+    for (std::size_t k = 0; k < filters_.size(); ++k) {
+      LdsBelief belief = filters_[k](nullptr, frame);
+      const double score = start_[static_cast<Eigen::Index>(k)] + belief.log_likelihood;
+      paths.push_back({std::move(belief), score});
+    }
+    return paths;
+  }
+
+  /// The paths one frame on, and the phone that each came from.
+  std::vector<Path> advance(const std::vector<Path>& before, const Eigen::RowVectorXd* frame,
+                            std::vector<Eigen::Index>& from) const {
+    std::vector<Path> paths(before.size());
+    for (std::size_t k = 0; k < paths.size(); ++k)
+      for (std::size_t j = 0; j < before.size(); ++j) {
+        LdsBelief belief = filters_[k](&before[j].belief, frame);
+        const auto origin = static_cast<Eigen::Index>(j);
+        const double score =
+            before[j].score + transitions_(origin, static_cast<Eigen::Index>(k)) + belief.log_likelihood;
+        if (j > 0 && score <= paths[k].score) continue;
+        paths[k] = {std::move(belief), score};
+        from[k] = origin;
+      }
+    return paths;
+  }
+
+ private:
+  Eigen::VectorXd start_;
+  Eigen::MatrixXd transitions_;
+  std::vector<Lds> systems_;  ///< of each phone, of the stream alone
+  std::vector<LdsFilter> filters_;
+};
+
+}  // namespace
+
+FrameLabels DecodeSlds::operator()(const Slds& model, const Track& track, Context& context) const {
+  FrameLabels decoded{{}, track.rate};
+  if (track.frames() == 0) return decoded;
+  const Scaling& scaling = stream == SldsStream::audio ? model.audio : model.visual;
+  if (scaling.mean.size() == 0)
+    throw std::runtime_error("the switching linear dynamical system gives the face alone: train it with `sound`");
+  require_frames_of(track, scaling.mean.size(), "the switching linear dynamical system");
+  const Eigen::MatrixXd frames = scaled(scaling, track.values);
+  const ApproximateViterbi viterbi(model, stream);
+  const std::vector<Eigen::Index> none(model.chain.phones.size());
+  std::vector<std::vector<Eigen::Index>> from(static_cast<std::size_t>(frames.rows()), none);
+  std::vector<Path> paths;
+  for (Eigen::Index t = 0; t < frames.rows(); ++t) {
+    context.check_cancelled();
+    const Eigen::RowVectorXd row = frames.row(t);
+    const Eigen::RowVectorXd* frame = track.is_lost(t) ? nullptr : &row;
+    paths = t == 0 ? viterbi.begin(frame) : viterbi.advance(paths, frame, from[static_cast<std::size_t>(t)]);
+  }
+  const auto best = std::ranges::max_element(paths, {}, &Path::score);
+  auto state = static_cast<std::size_t>(best - paths.begin());
+  decoded.labels.resize(from.size());
+  for (std::size_t t = from.size(); t-- > 0;) {
+    decoded.labels[t] = model.chain.phones[state];
+    state = static_cast<std::size_t>(from[t][state]);
+  }
+  return decoded;
+}
+
+void describe(Description<DecodeSlds>& d) {
+  d.type("mapping.slds_decode").version(1);
+  d.summary("the phones of a face or of sound by a switching linear dynamical system");
+  d.source("Thesis §5.1.1; Pavlovic, Rehg, Cham and Murphy 1999");
+  d.input("model", "of mapping.slds")
+      .input("track", "visual parameters or speech features that the model was trained on")
+      .output("labels", "the likeliest phone of each frame, by approximate Viterbi");
+  d.param("stream", &DecodeSlds::stream).doc("what the track is; audio needs a model with sound");
+}
+
+}  // namespace talkgraph
