@@ -92,10 +92,9 @@ struct FilterStep {
 FilterStep filter_step(const Whitened& white, const Eigen::MatrixXd* before, bool observed) {
   const Lds& model = white.model;
   FilterStep step;
-  step.predicted =
-      before ? root_of(model.prediction * *before * model.prediction.transpose() + model.prediction_noise,
-                       "a predicted state")
-             : root_of(model.first_covariance, "the first state");
+  step.predicted = before ? root_of(model.prediction * *before * model.prediction.transpose() + model.prediction_noise,
+                                    "a predicted state")
+                          : root_of(model.first_covariance, "the first state");
   if (!observed) {
     step.covariance = step.predicted.reconstructedMatrix();
     return step;

@@ -53,8 +53,8 @@ class LdsFilter {
   std::unique_ptr<System> system_;
 };
 
-/// The smoother for many sequences of one system, which must outlive it, without lost frames: gains and covariances do not
-/// depend on the frames, and are computed once for sequences of equal length, the filter's for all.
+/// The smoother for many sequences of one system, which must outlive it, without lost frames: gains and covariances do
+/// not depend on the frames, and are computed once for sequences of equal length, the filter's for all.
 class LdsSmoother {
  public:
   explicit LdsSmoother(const Lds& model);
