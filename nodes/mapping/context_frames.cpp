@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nodes/speech/place.h"
 #include "nodes/types/visemes.h"
 
 namespace talkgraph {
@@ -22,16 +23,10 @@ Eigen::MatrixXd phone_shares(const PhoneTrack& phones, const std::vector<std::st
   return shares;
 }
 
-Eigen::MatrixXd places(const PhoneTrack& phones, const Track& like, double time) {
+double end_of_speech(const PhoneTrack& phones, const Track& like) {
   const auto ends = std::ranges::find_if(phones.phones.rbegin(), phones.phones.rend(),
                                          [](const auto& phone) { return !is_pause(phone.label); });
-  const double end = ends != phones.phones.rend() ? ends->end : like.time(like.frames());
-  Eigen::MatrixXd p(like.frames(), 2);
-  for (Eigen::Index t = 0; t < like.frames(); ++t) {
-    const double at = like.time(t);
-    p.row(t) << std::exp(-(at - like.start) / time), std::exp(-std::max(0.0, end - at) / time);
-  }
-  return p;
+  return ends != phones.phones.rend() ? ends->end : like.time(like.frames());
 }
 
 Eigen::MatrixXd context_frames(const ContextGp& model, const Track& audio, const PhoneTrack& phones,
@@ -41,7 +36,7 @@ Eigen::MatrixXd context_frames(const ContextGp& model, const Track& audio, const
   f.leftCols(heard) =
       (audio.values.topRows(frames).rowwise() - model.audio_mean).array().rowwise() * model.audio_scale.array();
   f.middleCols(heard, said) = phone_shares(phones, model.phones, audio).topRows(frames);
-  if (model.place_time > 0) f.rightCols(2) = places(phones, audio, model.place_time).topRows(frames);
+  if (model.place_time > 0) f.rightCols(2) = places(audio, end_of_speech(phones, audio), model.place_time).topRows(frames);
   return f * model.map;
 }
 

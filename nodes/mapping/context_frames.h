@@ -12,9 +12,8 @@ namespace talkgraph {
 /// How much of each frame each of these phones takes (T × phones): 0 to 1.
 Eigen::MatrixXd phone_shares(const PhoneTrack& phones, const std::vector<std::string>& inventory, const Track& like);
 
-/// Where in its recording each frame is, T × 2: exp(−t / time) for t seconds since the recording begins, and for t
-/// seconds until speech ends, 1 thereafter. Where nobody speaks it ends with the sound.
-Eigen::MatrixXd places(const PhoneTrack& phones, const Track& like, double time);
+/// Seconds at which the last phone that is no pause ends; where nobody speaks, the sound.
+double end_of_speech(const PhoneTrack& phones, const Track& like);
 
 /// What the kernel compares of the first `frames` frames, a row a frame: f of ContextGp.
 Eigen::MatrixXd context_frames(const ContextGp& model, const Track& audio, const PhoneTrack& phones,

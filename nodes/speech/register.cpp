@@ -15,6 +15,7 @@
 #include "nodes/speech/lsf.h"
 #include "nodes/speech/mel.h"
 #include "nodes/speech/one_hot.h"
+#include "nodes/speech/place.h"
 #include "nodes/speech/preemphasis.h"
 #include "nodes/speech/rasta.h"
 #include "nodes/speech/remove_mean.h"
@@ -53,6 +54,7 @@ void register_speech(Registry& registry) {
   registry.add<Stack>();
   registry.add<Deltas>();
   registry.add<OneHot>();
+  registry.add<PlaceInRecording>();
 }
 
 }  // namespace talkgraph

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "nodes/speech/place.h"
 #include "tests/nodes/mapping/context_corpus.h"
 
 namespace talkgraph {
@@ -20,15 +21,11 @@ TEST(ContextFrames, PhoneSharesByHand) {
   EXPECT_LT((shares - expected).norm(), 1e-12);
 }
 
-TEST(ContextFrames, PlacesByHand) {
-  const PhoneTrack ends{{{"b", 0.0, 0.1}, {"sil", 0.1, 0.4}}};
-  const Eigen::MatrixXd place = places(ends, track(Eigen::MatrixXd::Zero(4, 1)), 0.5);
-  Eigen::MatrixXd expected(4, 2);
-  expected << 1, std::exp(-0.16), std::exp(-0.08), std::exp(-0.08), std::exp(-0.16), 1, std::exp(-0.24), 1;
-  EXPECT_LT((place - expected).norm(), 1e-12);
-  const Eigen::MatrixXd silent = places({{{"sil", 0.0, 0.16}}}, track(Eigen::MatrixXd::Zero(4, 1)), 0.5);
-  EXPECT_NEAR(silent(3, 1), std::exp(-0.08), 1e-12);
-  EXPECT_EQ(places({}, track(Eigen::MatrixXd::Zero(0, 1)), 0.5).rows(), 0);
+TEST(ContextFrames, EndOfSpeechByHand) {
+  const Track sound = track(Eigen::MatrixXd::Zero(4, 1));
+  EXPECT_EQ(end_of_speech({{{"b", 0.0, 0.1}, {"sil", 0.1, 0.4}}}, sound), 0.1);
+  EXPECT_EQ(end_of_speech({{{"sil", 0.0, 0.16}}}, sound), sound.time(4));
+  EXPECT_EQ(end_of_speech({}, sound), sound.time(4));
 }
 
 TEST(ContextFrames, JoinPlacesIfTheyAreCompared) {
@@ -37,7 +34,7 @@ TEST(ContextFrames, JoinPlacesIfTheyAreCompared) {
   model.place_time = 0.5;
   model.map = Eigen::MatrixXd::Identity(3, 3);
   const Track audio = track(Eigen::MatrixXd::Ones(4, 1));
-  EXPECT_EQ(context_frames(model, audio, phones, 3).rightCols(2), places(phones, audio, 0.5).topRows(3));
+  EXPECT_EQ(context_frames(model, audio, phones, 3).rightCols(2), places(audio, 0.2, 0.5).topRows(3));
 }
 
 TEST(ContextFrames, ByHand) {
