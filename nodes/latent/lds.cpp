@@ -257,10 +257,11 @@ LdsPosterior LdsSmoother::operator()(const Eigen::MatrixXd& frames) {
 }
 
 struct LdsFilter::System {
+  explicit System(const Lds& model) : white(model) {}
   Whitened white;
 };
 
-LdsFilter::LdsFilter(const Lds& model) : system_(std::make_unique<System>(Whitened(model))) {}
+LdsFilter::LdsFilter(const Lds& model) : system_(std::make_unique<System>(model)) {}
 LdsFilter::LdsFilter(LdsFilter&&) noexcept = default;
 LdsFilter::~LdsFilter() = default;
 

@@ -249,7 +249,7 @@ TEST(Dpds, AnswersDegenerateData) {
     Track t;
     t.values = values;
     const Dpds model = TrainDpds{}({{"x", t}}, {{"x", {labels, 25}}}, context);
-    const Track face = SynthesiseDpds{}(model, sound(t.frames()), {labels, 25});
+    Track face = SynthesiseDpds{}(model, sound(t.frames()), {labels, 25});
     EXPECT_TRUE(face.values.allFinite());
     EXPECT_EQ(DecodeDpds{}(model, t).labels.size(), labels.size());
     return face;

@@ -325,7 +325,7 @@ TEST(Slds, AnswersDegenerateData) {
     train.sound = sound;
     const auto answer = [&](const Corpus& c) {
       const Slds model = train(c.audio, c.visual, c.labels, context);
-      const Track face = SynthesiseSlds{}(model, c.audio[0], c.labels[0]);
+      Track face = SynthesiseSlds{}(model, c.audio[0], c.labels[0]);
       EXPECT_TRUE(face.values.allFinite());
       return face;
     };
