@@ -257,17 +257,18 @@ LdsPosterior LdsSmoother::operator()(const Eigen::MatrixXd& frames) {
 }
 
 struct LdsFilter::System {
-  explicit System(const Lds& model) : white(model) {}
+  explicit System(Lds of) : model(std::move(of)), white(model) {}
+  Lds model;
   Whitened white;
 };
 
-LdsFilter::LdsFilter(const Lds& model) : system_(std::make_unique<System>(model)) {}
+LdsFilter::LdsFilter(Lds model) : system_(std::make_unique<System>(std::move(model))) {}
 LdsFilter::LdsFilter(LdsFilter&&) noexcept = default;
 LdsFilter::~LdsFilter() = default;
 
 LdsBelief LdsFilter::operator()(const LdsBelief* before, const Eigen::RowVectorXd* frame) const {
   const Whitened& white = system_->white;
-  const FilterStep step = filter_step(white, before ? &before->covariance : nullptr, frame);
+  const FilterStep step = filter_step(white, before ? &before->covariance : nullptr, frame != nullptr);
   LdsBelief belief{before ? predicted_mean(white.model, before->mean) : white.model.first_mean, step.covariance, 0};
   if (frame) belief.log_likelihood = observe(white, step, white.columns(*frame), belief.mean);
   return belief;

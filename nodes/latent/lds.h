@@ -39,10 +39,10 @@ struct LdsBelief {
   Eigen::MatrixXd covariance;  ///< d × d
   double log_likelihood = 0;   ///< of the frame, given those before
 };
-/// The filter's step alone, for those who choose the system of each frame as they go. The system must outlive it.
+/// The filter's step alone, for those who choose the system of each frame as they go. Throws as kalman_filter().
 class LdsFilter {
  public:
-  explicit LdsFilter(const Lds& model);
+  explicit LdsFilter(Lds model);
   LdsFilter(LdsFilter&&) noexcept;
   ~LdsFilter();
   /// Of a frame, null if it is lost, and what was known of the one before, null for a first frame.

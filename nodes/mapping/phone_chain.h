@@ -6,7 +6,8 @@
 
 namespace talkgraph {
 
-/// The chain of sequences of labels, one after the other: first phones and transitions counted, each once more.
+/// The chain of sequences of labels, one after the other, `lengths` of them each, at least 1: first phones and
+/// transitions counted, each once more.
 PhoneChain phone_chain(const std::vector<std::string>& labels, const std::vector<std::int64_t>& lengths);
 
 }  // namespace talkgraph

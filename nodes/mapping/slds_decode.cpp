@@ -1,6 +1,7 @@
 #include "nodes/mapping/slds_decode.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "nodes/latent/lds.h"
@@ -12,10 +13,12 @@ namespace talkgraph {
 
 namespace {
 
+constexpr double kNone = -std::numeric_limits<double>::infinity();
+
 /// The likeliest path to a phone of a frame: what a filter along it knows of the state, and its score.
 struct Path {
   LdsBelief belief;
-  double score = 0;  ///< log-likelihood of the frames, and log-probability of the phones
+  double score = kNone;  ///< log-likelihood of the frames, and log-probability of the phones
 };
 
 class ApproximateViterbi {
@@ -23,13 +26,9 @@ class ApproximateViterbi {
   ApproximateViterbi(const Slds& model, SldsStream stream)
       : start_(model.chain.start.array().log()), transitions_(model.chain.transitions.array().log()) {
     const Eigen::Index heard = model.audio.mean.size(), seen = model.visual.mean.size();
-    systems_.reserve(model.chain.phones.size());
-    for (const std::string& phone : model.chain.phones) {
-      const Lds& system = system_of(model, phone);
-      systems_.push_back(stream == SldsStream::audio ? observed_part(system, 0, heard)
-                                                     : observed_part(system, heard, seen));
-      filters_.emplace_back(systems_.back());
-    }
+    const bool audio = stream == SldsStream::audio;
+    for (const std::string& phone : model.chain.phones)
+      filters_.emplace_back(observed_part(system_of(model, phone), audio ? 0 : heard, audio ? heard : seen));
   }
 
   std::vector<Path> begin(const Eigen::RowVectorXd* frame) const {
@@ -48,11 +47,12 @@ class ApproximateViterbi {
     std::vector<Path> paths(before.size());
     for (std::size_t k = 0; k < paths.size(); ++k)
       for (std::size_t j = 0; j < before.size(); ++j) {
+        if (!(before[j].score > kNone)) continue;
         LdsBelief belief = filters_[k](&before[j].belief, frame);
         const auto origin = static_cast<Eigen::Index>(j);
         const double score =
             before[j].score + transitions_(origin, static_cast<Eigen::Index>(k)) + belief.log_likelihood;
-        if (j > 0 && score <= paths[k].score) continue;
+        if (!(score > paths[k].score)) continue;
         paths[k] = {std::move(belief), score};
         from[k] = origin;
       }
@@ -62,8 +62,7 @@ class ApproximateViterbi {
  private:
   Eigen::VectorXd start_;
   Eigen::MatrixXd transitions_;
-  std::vector<Lds> systems_;  ///< of each phone, of the stream alone
-  std::vector<LdsFilter> filters_;
+  std::vector<LdsFilter> filters_;  ///< of each phone, of the stream alone
 };
 
 }  // namespace
@@ -73,7 +72,9 @@ FrameLabels DecodeSlds::operator()(const Slds& model, const Track& track, Contex
   if (track.frames() == 0) return decoded;
   const Scaling& scaling = stream == SldsStream::audio ? model.audio : model.visual;
   if (scaling.mean.size() == 0)
-    throw std::runtime_error("the switching linear dynamical system gives the face alone: train it with `sound`");
+    throw std::runtime_error(stream == SldsStream::audio
+                                 ? "the switching linear dynamical system gives the face alone: train it with `sound`"
+                                 : "the switching linear dynamical system gives no face");
   require_frames_of(track, scaling.mean.size(), "the switching linear dynamical system");
   const Eigen::MatrixXd frames = scaled(scaling, track.values);
   const ApproximateViterbi viterbi(model, stream);
@@ -87,6 +88,10 @@ FrameLabels DecodeSlds::operator()(const Slds& model, const Track& track, Contex
     paths = t == 0 ? viterbi.begin(frame) : viterbi.advance(paths, frame, from[static_cast<std::size_t>(t)]);
   }
   const auto best = std::ranges::max_element(paths, {}, &Path::score);
+  if (!(best->score > kNone))
+    throw std::runtime_error(
+        "the states of the switching linear dynamical system grow beyond all bounds before the track ends: train it "
+        "with a `bound` below 1");
   auto state = static_cast<std::size_t>(best - paths.begin());
   decoded.labels.resize(from.size());
   for (std::size_t t = from.size(); t-- > 0;) {

@@ -33,7 +33,9 @@ void describe(Description<PlaceInRecording>& d) {
   d.type("speech.place").summary("how near each frame is to where its recording begins and where speech ends");
   d.input("labels", "phone of every frame").output("track", "T x 2: weight exp(-t / time) for both distances in time");
   d.param("time", &PlaceInRecording::time).positive().unit("s").doc("in which they fall to 1/e");
-  d.param("weight", &PlaceInRecording::weight).positive().doc("of both, where distances are to be measured");
+  d.param("weight", &PlaceInRecording::weight)
+      .positive()
+      .doc("factor on both, where distances to other features are to be measured");
 }
 
 }  // namespace talkgraph

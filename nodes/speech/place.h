@@ -6,8 +6,8 @@
 
 namespace talkgraph {
 
-/// Where in its recording each frame is, T × 2: exp(−t / time) for t seconds since the recording begins, and for t
-/// seconds until speech ends at `end`, 1 thereafter.
+/// Where in its recording each frame is, T × 2: exp(−t / time) for t seconds since its first frame, and for t seconds
+/// until speech ends at `end`, 1 thereafter.
 Eigen::MatrixXd places(const Track& like, double end, double time);
 
 /// That as features, to be joined to those of speech. Speech ends with the last label that is no pause; where nobody

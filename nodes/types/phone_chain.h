@@ -11,7 +11,7 @@ namespace talkgraph {
 /// How phones follow each other, a frame a step: a Markov chain of K phones.
 struct PhoneChain {
   std::vector<std::string> phones;  ///< K, sorted
-  Eigen::VectorXd start;            ///< p(π_1), K
+  Eigen::VectorXd start;            ///< p(π_1), of recordings and after lost frames, K
   Eigen::MatrixXd transitions;      ///< p(π_t = column | π_{t−1} = row), K × K
 
   Eigen::Index size() const { return std::ssize(phones); }

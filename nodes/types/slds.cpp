@@ -1,5 +1,7 @@
 #include "nodes/types/slds.h"
 
+#include <algorithm>
+
 #include "nodes/types/stored_model.h"
 
 namespace talkgraph {
@@ -15,8 +17,10 @@ void check(const Slds& s) {
     return system.dimension() == heard + seen && system.states() == s.shared.states();
   };
   stored.require(fits(s.shared), "shared", "does not give the frames");
-  for (const auto& [phone, system] : s.phones)
+  for (const auto& [phone, system] : s.phones) {
     stored.require(fits(system), "phones", "have a system of other sizes: " + phone);
+    stored.require(std::ranges::binary_search(s.chain.phones, phone), "chain", "lacks a phone: " + phone);
+  }
 }
 
 }  // namespace

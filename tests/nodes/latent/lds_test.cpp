@@ -305,6 +305,29 @@ TEST(Lds, AnswersDegenerateData) {
   EXPECT_THROW(kalman_filter(broken, gaussian(2, 4, 1)), std::runtime_error);
 }
 
+TEST(LdsFilter, StepByStepIsTheKalmanFilter) {
+  const Lds one = truth();
+  Lds other = one;
+  other.prediction *= -0.5;
+  other.observation *= 2;
+  const Eigen::MatrixXd frames = sample(one, {8}, 1).frames;
+  const LdsRegimes regimes{&one, &other, &other, &one, &one, &other, &one, &one};
+  const std::vector<std::int64_t> lost{0, 4};
+  const LdsPosterior whole = kalman_filter(regimes, frames, lost);
+  const LdsFilter of_one(one), of_other(other);
+  LdsBelief belief;
+  double log_likelihood = 0;
+  for (Eigen::Index t = 0; t < 8; ++t) {
+    const Eigen::RowVectorXd frame = frames.row(t);
+    const LdsFilter& filter = regimes[static_cast<std::size_t>(t)] == &one ? of_one : of_other;
+    belief = filter(t == 0 ? nullptr : &belief, t == 0 || t == 4 ? nullptr : &frame);
+    log_likelihood += belief.log_likelihood;
+    EXPECT_LT((belief.mean - whole.means.row(t).transpose()).norm(), 1e-12);
+    EXPECT_LT((belief.covariance - whole.covariances[static_cast<std::size_t>(t)]).norm(), 1e-12);
+  }
+  EXPECT_NEAR(log_likelihood, whole.log_likelihood, 1e-9);
+}
+
 TEST(SmoothLds, DenoisesATrackAndBridgesLostFrames) {
   Lds model = truth();
   Track track;

@@ -120,6 +120,9 @@ TEST_F(StoredMappings, ThatAreDynamicalSystemsFitTogetherOrAreRefused) {
         [&](const Slds& m) -> Eigen::MatrixXd {
           const Track face = SynthesiseSlds{}(m, heard, labels[0]);
           EXPECT_EQ(DecodeSlds{}(m, face, context).labels.size(), labels[0].labels.size());
+          if (sound) {
+            EXPECT_EQ(DecodeSlds{SldsStream::audio}(m, heard, context).labels.size(), labels[0].labels.size());
+          }
           return face.values;
         },
         60);
