@@ -36,7 +36,8 @@ Eigen::MatrixXd context_frames(const ContextGp& model, const Track& audio, const
   f.leftCols(heard) =
       (audio.values.topRows(frames).rowwise() - model.audio_mean).array().rowwise() * model.audio_scale.array();
   f.middleCols(heard, said) = phone_shares(phones, model.phones, audio).topRows(frames);
-  if (model.place_time > 0) f.rightCols(2) = places(audio, end_of_speech(phones, audio), model.place_time).topRows(frames);
+  if (model.place_time > 0)
+    f.rightCols(2) = places(audio, end_of_speech(phones, audio), model.place_time).topRows(frames);
   return f * model.map;
 }
 

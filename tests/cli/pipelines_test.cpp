@@ -113,6 +113,16 @@ TEST(Experiments, OfFiftySentencesHaveTheSameSettings) {
   EXPECT_GT(of_grid.size(), 20u);
   EXPECT_EQ(settings("lips"), of_grid);
   EXPECT_EQ(settings("demnow"), of_grid);
+  const auto of_row = [&](const std::string& row) {
+    const std::string graph = "nodes.face/" + row;
+    std::map<std::string, Json> values;
+    for (const auto& [path, value] : of_grid)
+      if (path.starts_with(graph + "/") || path.starts_with(graph + ".")) values[path.substr(graph.size())] = value;
+    EXPECT_FALSE(values.empty()) << row;
+    return values;
+  };
+  EXPECT_EQ(of_row("neighbours_place"), of_row("neighbours_phones"));
+  EXPECT_EQ(of_row("soft_place"), of_row("soft_learnt"));
 }
 
 TEST(Experiments, OfAllMethodsExplainTheirMeasures) {
