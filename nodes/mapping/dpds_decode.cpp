@@ -4,6 +4,7 @@
 
 #include "nodes/latent/sequences.h"
 #include "nodes/mapping/scaling.h"
+#include "nodes/types/best_path.h"
 
 namespace talkgraph {
 
@@ -26,13 +27,11 @@ class ApproximateViterbi {
   Front begin() const { return {model_.chain.start.array().log(), model_.first}; }
 
   /// The paths one frame on, and the state that each came from.
-  Front advance(const Front& front, std::vector<Eigen::Index>& from) const {
+  Front advance(const Front& front, Origins& from) const {
     Front next = front;
     for (Eigen::Index k = 0; k < next.scores.size(); ++k) {
-      Eigen::Index best = 0;
-      next.scores[k] = (front.scores + transitions_.col(k)).maxCoeff(&best);
-      next.points.row(k) = front.points.row(best).cwiseProduct(model_.prediction.row(k)) + model_.offset.row(k);
-      from[static_cast<std::size_t>(k)] = best;
+      next.scores[k] = (front.scores + transitions_.col(k)).maxCoeff(&from[k]);
+      next.points.row(k) = front.points.row(from[k]).cwiseProduct(model_.prediction.row(k)) + model_.offset.row(k);
     }
     return next;
   }
@@ -57,20 +56,16 @@ FrameLabels DecodeDpds::operator()(const Dpds& model, const Track& visual) const
   require_frames_of(visual, model.first.cols(), "the deterministic process dynamical system");
   const Eigen::MatrixXd frames = scaled(model.visual, visual.values);
   const ApproximateViterbi viterbi(model);
-  const std::vector<Eigen::Index> none(model.chain.phones.size());
-  std::vector<std::vector<Eigen::Index>> from(static_cast<std::size_t>(frames.rows()), none);
+  std::vector<Origins> from(static_cast<std::size_t>(frames.rows()), Origins::Zero(model.first.rows()));
   Front front = viterbi.begin();
   for (Eigen::Index t = 0; t < frames.rows(); ++t) {
     if (t > 0) front = viterbi.advance(front, from[static_cast<std::size_t>(t)]);
     if (!visual.is_lost(t)) viterbi.observe(front, frames.row(t));
   }
-  Eigen::Index state = 0;
-  front.scores.maxCoeff(&state);
-  decoded.labels.resize(from.size());
-  for (std::size_t t = from.size(); t-- > 0;) {
-    decoded.labels[t] = model.chain.phones[static_cast<std::size_t>(state)];
-    state = from[t][static_cast<std::size_t>(state)];
-  }
+  Eigen::Index last = 0;
+  front.scores.maxCoeff(&last);
+  for (const Eigen::Index phone : trace_back(from, last))
+    decoded.labels.push_back(model.chain.phones[static_cast<std::size_t>(phone)]);
   return decoded;
 }
 

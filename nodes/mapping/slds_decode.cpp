@@ -8,6 +8,7 @@
 #include "nodes/latent/sequences.h"
 #include "nodes/mapping/scaling.h"
 #include "nodes/mapping/slds.h"
+#include "nodes/types/best_path.h"
 
 namespace talkgraph {
 
@@ -43,18 +44,17 @@ class ApproximateViterbi {
 
   /// The paths one frame on, and the phone that each came from.
   std::vector<Path> advance(const std::vector<Path>& before, const Eigen::RowVectorXd* frame,
-                            std::vector<Eigen::Index>& from) const {
+                            Origins& from) const {
     std::vector<Path> paths(before.size());
     for (std::size_t k = 0; k < paths.size(); ++k)
       for (std::size_t j = 0; j < before.size(); ++j) {
         if (!(before[j].score > kNone)) continue;
         LdsBelief belief = filters_[k](&before[j].belief, frame);
-        const auto origin = static_cast<Eigen::Index>(j);
-        const double score =
-            before[j].score + transitions_(origin, static_cast<Eigen::Index>(k)) + belief.log_likelihood;
+        const auto origin = static_cast<Eigen::Index>(j), phone = static_cast<Eigen::Index>(k);
+        const double score = before[j].score + transitions_(origin, phone) + belief.log_likelihood;
         if (!(score > paths[k].score)) continue;
         paths[k] = {std::move(belief), score};
-        from[k] = origin;
+        from[phone] = origin;
       }
     return paths;
   }
@@ -78,8 +78,8 @@ FrameLabels DecodeSlds::operator()(const Slds& model, const Track& track, Contex
   require_frames_of(track, scaling.mean.size(), "the switching linear dynamical system");
   const Eigen::MatrixXd frames = scaled(scaling, track.values);
   const ApproximateViterbi viterbi(model, stream);
-  const std::vector<Eigen::Index> none(model.chain.phones.size());
-  std::vector<std::vector<Eigen::Index>> from(static_cast<std::size_t>(frames.rows()), none);
+  const auto phones = static_cast<Eigen::Index>(model.chain.phones.size());
+  std::vector<Origins> from(static_cast<std::size_t>(frames.rows()), Origins::Zero(phones));
   std::vector<Path> paths;
   for (Eigen::Index t = 0; t < frames.rows(); ++t) {
     context.check_cancelled();
@@ -92,12 +92,8 @@ FrameLabels DecodeSlds::operator()(const Slds& model, const Track& track, Contex
     throw std::runtime_error(
         "the states of the switching linear dynamical system grow beyond all bounds before the track ends: train it "
         "with a `bound` below 1");
-  auto state = static_cast<std::size_t>(best - paths.begin());
-  decoded.labels.resize(from.size());
-  for (std::size_t t = from.size(); t-- > 0;) {
-    decoded.labels[t] = model.chain.phones[state];
-    state = static_cast<std::size_t>(from[t][state]);
-  }
+  for (const Eigen::Index phone : trace_back(from, best - paths.begin()))
+    decoded.labels.push_back(model.chain.phones[static_cast<std::size_t>(phone)]);
   return decoded;
 }
 

@@ -5,6 +5,7 @@
 #include "nodes/phones/mark_pauses.h"
 #include "nodes/phones/masks.h"
 #include "nodes/phones/recognise.h"
+#include "nodes/phones/time_labels.h"
 #include "nodes/phones/visemes.h"
 #include "nodes/phones/vote_labels.h"
 
@@ -14,6 +15,7 @@ void register_phones(Registry& registry) {
   registry.add<Align>();
   registry.add<Recognise>();
   registry.add<LabelFrames>();
+  registry.add<TimeLabels>();
   registry.add<MarkPauses>();
   registry.add<SpeechMask>();
   registry.add<WordMask>();

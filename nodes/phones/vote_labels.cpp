@@ -1,15 +1,12 @@
 #include "nodes/phones/vote_labels.h"
 
 #include "nodes/phones/label_frames.h"
+#include "nodes/phones/time_labels.h"
 
 namespace talkgraph {
 
 FrameLabels VoteLabels::operator()(const FrameLabels& labels, const Track& like) const {
-  PhoneTrack phones;
-  const double rate = labels.rate.value();
-  for (std::size_t n = 0; n < labels.labels.size(); ++n)
-    phones.phones.push_back({labels.labels[n], static_cast<double>(n) / rate, static_cast<double>(n + 1) / rate});
-  return LabelFrames{}(phones, like);
+  return LabelFrames{}(TimeLabels{}(labels), like);
 }
 
 void describe(Description<VoteLabels>& d) {

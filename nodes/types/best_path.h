@@ -6,6 +6,17 @@
 
 namespace talkgraph {
 
+/// The state of the frame before that each state of a frame is best reached from.
+using Origins = Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1>;
+
+/// The states of T frames that lead to the state `last` of the last one; origins of the first frame are not read. T is at
+/// least 1.
+inline std::vector<Eigen::Index> trace_back(const std::vector<Origins>& from, Eigen::Index last) {
+  std::vector<Eigen::Index> states(from.size(), last);
+  for (std::size_t t = states.size(); t-- > 1;) states[t - 1] = from[t](states[t]);
+  return states;
+}
+
 /// A state for each of T frames.
 struct BestPath {
   std::vector<Eigen::Index> states;     ///< T
@@ -18,21 +29,22 @@ struct BestPath {
 template <class Scores, class Steps>
 BestPath best_path(Eigen::Index frames, Scores scores, Steps steps) {
   BestPath path;
-  std::vector<Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1>> from(static_cast<std::size_t>(frames));
+  std::vector<Origins> from(static_cast<std::size_t>(frames));
   for (Eigen::Index t = 0; t < frames; ++t) {
     Eigen::VectorXd score = scores(t);
     if (t > 0) {
       const Eigen::MatrixXd& step = steps(t);
-      auto& pointers = from[static_cast<std::size_t>(t)];
-      pointers.resize(score.size());
+      Origins& origins = from[static_cast<std::size_t>(t)];
+      origins.resize(score.size());
       for (Eigen::Index k = 0; k < score.size(); ++k)
-        score(k) += (path.scores.back() + step.col(k)).maxCoeff(&pointers(k));
+        score(k) += (path.scores.back() + step.col(k)).maxCoeff(&origins(k));
     }
     path.scores.push_back(std::move(score));
   }
-  path.states.resize(from.size());
-  if (frames > 0) path.scores.back().maxCoeff(&path.states.back());
-  for (std::size_t t = path.states.size(); t-- > 1;) path.states[t - 1] = from[t](path.states[t]);
+  if (frames == 0) return path;
+  Eigen::Index last = 0;
+  path.scores.back().maxCoeff(&last);
+  path.states = trace_back(from, last);
   return path;
 }
 

@@ -4,6 +4,7 @@
 
 #include "graph/random.h"
 #include "nodes/phones/masks.h"
+#include "nodes/phones/time_labels.h"
 #include "nodes/phones/vote_labels.h"
 
 namespace talkgraph {
@@ -81,6 +82,27 @@ TEST(VoteLabels, AgreesWithTheTimesOfPhonesThatBeginAtLabels) {
     const auto frames = static_cast<Eigen::Index>(static_cast<double>(at_100.labels.size()) / 100 * rate.value()) + 1;
     EXPECT_EQ(VoteLabels{}(at_100, video(frames, rate)).labels, LabelFrames{}(phones, video(frames, rate)).labels)
         << rate.str();
+  }
+}
+
+TEST(TimeLabels, MakesOnePhoneOfEachRunOfLabels) {
+  const std::vector<Interval> timed = TimeLabels{}({{"sil", "b", "b", "aa", "b"}, 25}).phones;
+  const std::vector<Interval> expected{{"sil", 0, 0.04}, {"b", 0.04, 0.12}, {"aa", 0.12, 0.16}, {"b", 0.16, 0.2}};
+  ASSERT_EQ(timed.size(), expected.size());
+  for (std::size_t n = 0; n < timed.size(); ++n) {
+    EXPECT_EQ(timed[n].label, expected[n].label);
+    EXPECT_DOUBLE_EQ(timed[n].start, expected[n].start);
+    EXPECT_DOUBLE_EQ(timed[n].end, expected[n].end);
+  }
+  EXPECT_TRUE(TimeLabels{}({}).phones.empty());
+}
+
+TEST(TimeLabels, GivesTheLabelsBackAtAnyRate) {
+  Random random(1, "time labels", "labels");
+  for (const Rational rate : {Rational(25), Rational(30000, 1001), Rational(100)}) {
+    FrameLabels labels{{}, rate};
+    for (int n = 0; n < 500; ++n) labels.labels.emplace_back(1 + random.below(3), 'a');
+    EXPECT_EQ(LabelFrames{}(TimeLabels{}(labels), video(500, rate)).labels, labels.labels) << rate.str();
   }
 }
 
