@@ -43,8 +43,7 @@ class ApproximateViterbi {
   }
 
   /// The paths one frame on, and the phone that each came from.
-  std::vector<Path> advance(const std::vector<Path>& before, const Eigen::RowVectorXd* frame,
-                            Origins& from) const {
+  std::vector<Path> advance(const std::vector<Path>& before, const Eigen::RowVectorXd* frame, Origins& from) const {
     std::vector<Path> paths(before.size());
     for (std::size_t k = 0; k < paths.size(); ++k)
       for (std::size_t j = 0; j < before.size(); ++j) {

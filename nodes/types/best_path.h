@@ -9,8 +9,8 @@ namespace talkgraph {
 /// The state of the frame before that each state of a frame is best reached from.
 using Origins = Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1>;
 
-/// The states of T frames that lead to the state `last` of the last one; origins of the first frame are not read. T is at
-/// least 1.
+/// The states of T frames that lead to the state `last` of the last one; origins of the first frame are not read. T is
+/// at least 1.
 inline std::vector<Eigen::Index> trace_back(const std::vector<Origins>& from, Eigen::Index last) {
   std::vector<Eigen::Index> states(from.size(), last);
   for (std::size_t t = states.size(); t-- > 1;) states[t - 1] = from[t](states[t]);
