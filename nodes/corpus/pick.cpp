@@ -12,7 +12,7 @@ std::optional<Recording> Pick::operator()(const Recording& recording) const {
 void describe(Description<Pick>& d) {
   d.type("corpus.pick").summary("lets the recordings of some names pass");
   d.input("recording", "of any name").output("recording", "the same; nothing where it has another name");
-  d.param("ids", &Pick::ids).doc("names");
+  d.param("ids", &Pick::ids).doc("names; one that no recording has is passed over");
 }
 
 }  // namespace talkgraph

@@ -9,7 +9,8 @@
 
 namespace talkgraph {
 
-/// Lets the recordings of these names pass.
+/// Lets the recordings of these names pass; a name that none has is passed over, as every recording is looked at by
+/// itself.
 struct Pick {
   std::vector<std::string> ids;
 

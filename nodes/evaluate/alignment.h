@@ -6,7 +6,7 @@
 
 namespace talkgraph {
 
-/// How well phones were aligned: one row over all phones of all sequences, and a row for each sequence.
+/// How well phones were found: one row over all phones of all sequences, and a row for each sequence.
 struct AlignmentTables {
   Table table;
   Table sequences;
@@ -17,6 +17,7 @@ struct AlignmentTables {
 ///   phones        in the truth
 ///   different     phones of the truth that were not found or found as others, and phones found
 ///                 that it lacks, per phone of the truth
+///   right time    share of the time of the truth's phones in which the phone found is the same
 ///   median        median of |start found − true start|, ms
 ///   bias          median of start found − true start, ms
 ///   within 10 ms, within 20 ms, within 50 ms   shares of the pairs

@@ -7,8 +7,8 @@
 namespace talkgraph {
 
 /// Phones of speech whose words are not known, by PocketSphinx's loop of
-/// context-independent phones with its phone bigram. Most phones are wrong (60 to 70 %,
-/// measured against known phones): it is a stopgap, and says so in the log. Known phones (from
+/// context-independent phones with its phone bigram. Most are wrong, 57 % of the time of speech on
+/// GRID s1 (pipelines/phones-grid-s1.json): it is a stopgap, and says so in the log. Known phones (from
 /// phones.align) are passed on.
 ///
 /// The result covers the whole sound without gaps; digital silence and sound
