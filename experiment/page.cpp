@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 
+#include "experiment/verdict.h"
 #include "graph/differences.h"
 #include "graph/output_file.h"
 #include "nodes/plot/svg.h"
@@ -191,6 +192,28 @@ std::string score_table(const Experiment& experiment, const OutputEstimates& est
   }
   return html_table(title_with_key(estimates.output, any([](const auto* e) { return is_significant(e->p); })), head,
                     lines);
+}
+
+/// "By acc ours is ahead of all others (p below 0.05) but theirs, 0.01 behind; it wins 12 recordings."
+std::string verdict_text(const Verdict& verdict) {
+  const auto bold = [](const std::string& row) { return "<b>" + escape_markup(row) + "</b>"; };
+  std::vector<std::string> close;
+  for (const auto& other : verdict.close)
+    close.push_back(fmt::format("{}, {:.2g} behind", bold(other.row), other.behind));
+  std::string text =
+      fmt::format("By {} {} is ahead of all others (p below 0.05)", escape_markup(verdict.score), bold(verdict.best));
+  if (!close.empty()) text += fmt::format(" but {}", fmt::join(close, "; "));
+  if (!std::isnan(verdict.won)) text += fmt::format("; it wins {:g} recordings", verdict.won);
+  return text + ".";
+}
+
+std::string verdict_list(const Experiment& experiment, const OutputEstimates& estimates) {
+  std::string list;
+  for (const Verdict& verdict : verdicts(estimates.all)) {
+    const std::string levels = escape_markup(levels_text(experiment, verdict.setting));
+    list += fmt::format("<li>{}{}</li>\n", levels.empty() ? "" : levels + ". ", verdict_text(verdict));
+  }
+  return list.empty() ? "" : "<ul>\n" + list + "</ul>\n";
 }
 
 /// Methods that others are tested against, by the tables of the graphs.
@@ -397,7 +420,8 @@ std::string html_results(const Experiment& experiment, const std::vector<Graph>&
     html += "<p>* Without items that failed: see the runs.</p>\n";
   for (const auto& missing : missing_measures(experiment, estimates)) html += "<p>" + escape_markup(missing) + "</p>\n";
   for (const auto& of_output : by_output(estimates))
-    html += score_table(experiment, of_output, meanings_of(of_output.measures, graphs));
+    html += verdict_list(experiment, of_output) +
+            score_table(experiment, of_output, meanings_of(of_output.measures, graphs));
   for (const auto& plot : plot_estimates(experiment, estimates)) html += html_plot(plot);
   return html + clips(experiment, results, folder);
 }

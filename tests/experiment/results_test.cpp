@@ -154,6 +154,16 @@ TEST(Results, SayWhatBehindIsAndItsP) {
   EXPECT_THAT(page, HasSubstr("<td>0.125<br><small>p = 0.062</small></td>"));
 }
 
+TEST(Results, SayWhoIsBest) {
+  const auto best = result_of({{"best", "", "a < b", "acc behind", 0},
+                               {"best", "", "a < b", "acc won", 3},
+                               {"best", "", "c", "acc behind", 0.125},
+                               {"best", "", "c", "acc behind p", 0.0625}});
+  EXPECT_THAT(html_results(two_settings(), {}, {best, {}, {}, {}}, ""),
+              HasSubstr("<li>filters: 20. By acc <b>a &lt; b</b> is ahead of all others (p below 0.05) but <b>c</b>, "
+                        "0.12 behind; it wins 3 recordings.</li>"));
+}
+
 TEST(Results, SayWhomMethodsAreTestedAgainst) {
   Graph graph;
   graph.resolved = {{"nodes",
