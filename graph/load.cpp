@@ -120,7 +120,7 @@ void merge(LocatedJson& base, const LocatedJson& patch, const std::string& at, D
     } else if (m.value.is(Kind::null)) {
       diagnostics.error(
           m.key_place,
-          fmt::format("null takes \"{}\" away, but what is extended has none{}{}", name,
+          fmt::format("null takes \"{}\" away, but what this is laid over has none{}{}", name,
                       did_you_mean(m.key, keys_of(base)),
                       at.ends_with(".params") ? "; \"${name}\" of a parameter whose default is null gives null" : ""));
     } else {
@@ -241,7 +241,7 @@ class Loader {
     if (!node)
       return diagnostics_.error(setting.value.place, fmt::format("there is no \"{}\"{} to set{}", outer, where,
                                                                  did_you_mean(outer, keys_of(nodes->value))));
-    if (!node->value.find("graph"))
+    if (!is_graph(nodes->value, *node))
       return diagnostics_.error(setting.value.place, fmt::format("\"{}\" is a node, not a graph with a node \"{}\"",
                                                                  prefix + outer, name.substr(slash + 1)));
     name.erase(0, slash + 1);
@@ -254,6 +254,17 @@ class Loader {
                        [](const auto& m) { return m.key.find('/') != std::string::npos; });
   }
 
+  /// Whether a node is a graph, itself or as what it is like.
+  static bool is_graph(const LocatedJson& nodes, const LocatedJson::Member& node) {
+    const auto* at = &node;
+    for (std::size_t steps = 0; at && steps <= nodes.members.size(); ++steps) {
+      if (at->value.find("graph")) return true;
+      const auto* like = at->value.find("like");
+      at = like && like->value.is(Kind::text) ? nodes.find(like->value.scalar.get<std::string>()) : nullptr;
+    }
+    return false;
+  }
+
   void open(Scope& scope, const LocatedJson* given, const std::string& subject) {
     if (!expect_object(scope.json, subject, diagnostics_)) return;
     check_keys(scope.json, graph_keys, subject, diagnostics_);
@@ -263,10 +274,37 @@ class Loader {
     if (!nodes) return diagnostics_.error(scope.json.place, subject + " has no \"nodes\"");
     if (!expect_object(nodes->value, "\"nodes\"", diagnostics_)) return;
     for (const auto& m : nodes->value.members) {
+      const auto whole = whole_node(nodes->value, m, {});
+      if (!whole) continue;
       auto& entry = scope.entries[m.key];
-      entry.json = substitute(m.value);
+      entry.json = substitute(*whole);
       open_node(scope, m, entry);
     }
+  }
+
+  /// A node's text; where it is like another node of the graph, that one's with its own laid over it. `copied` names
+  /// the nodes that are like it.
+  std::optional<LocatedJson> whole_node(const LocatedJson& nodes, const LocatedJson::Member& node,
+                                        std::vector<std::string> copied) {
+    const auto* like = node.value.find("like");
+    if (!like) return node.value;
+    const std::string subject = fmt::format("node \"{}\"", node.key);
+    std::string name;
+    if (!read_text(like->value, name, "the name of a node", subject + ": \"like\"", diagnostics_)) return {};
+    copied.push_back(node.key);
+    if (std::ranges::find(copied, name) != copied.end())
+      return diagnostics_.error(like->value.place, subject + " is like itself"), std::nullopt;
+    const auto* other = nodes.find(name);
+    if (!other)
+      return diagnostics_.error(like->value.place, fmt::format("{} is like \"{}\", which is no node here{}", subject,
+                                                               name, did_you_mean(name, keys_of(nodes)))),
+             std::nullopt;
+    auto whole = whole_node(nodes, *other, std::move(copied));
+    if (!whole) return {};
+    LocatedJson own = node.value;
+    std::erase_if(own.members, [](const auto& m) { return m.key == "like"; });
+    merge(*whole, own, node.key, diagnostics_);
+    return whole;
   }
 
   void read_parameters(Scope& scope, const LocatedJson* given, const std::string& subject) {

@@ -123,15 +123,17 @@ Json any_node(const Registry& registry) {
     cases.push_back({{"if", {{"properties", {{"type", {{"const", name}}}}}, {"required", {"type"}}}},
                      {"then", refer("node:" + name)}});
   }
-  cases.push_back({{"if", {{"required", {"graph"}}}}, {"then", refer("graphNode")}});
+  cases.push_back({{"if", {{"required", {"graph"}}, {"not", {{"required", {"like"}}}}}}, {"then", refer("graphNode")}});
   return {{"type", "object"},
           {"properties",
-           {{"type", {{"description", "node type; talkgraph nodes lists them"}, {"anyOf", types}}},
+           {{"like", text("another node here, whose members are its own where it does not say otherwise")},
+            {"type", {{"description", "node type; talkgraph nodes lists them"}, {"anyOf", types}}},
             {"graph", text("a graph file, used as a node")},
             {"description", text("for readers")},
             {"in", {{"type", "object"}}},
             {"params", {{"type", "object"}}}}},
-          {"oneOf", {{{"required", {"type"}}}, {{"required", {"graph"}}}}},
+          {"anyOf", {{{"required", {"type"}}}, {{"required", {"graph"}}}, {{"required", {"like"}}}}},
+          {"not", {{"required", {"type", "graph"}}}},
           {"allOf", cases}};
 }
 

@@ -277,12 +277,60 @@ TEST_F(Load, ExtendsInTurnsAndInFragments) {
 TEST_F(Load, SaysWhatIsWrongWithAnExtension) {
   write("base.json", R"({ "nodes": { "alpha": { "type": "toy.constant" } }, "outputs": { "n": "alpha" } })");
   expect_error(R"({ "extends": "base.json", "nodes": { "alhpa": null } })", "g.json:1:38",
-               "null takes \"nodes.alhpa\" away, but what is extended has none (did you mean \"alpha\"?)");
+               "null takes \"nodes.alhpa\" away, but what this is laid over has none (did you mean \"alpha\"?)");
   expect_error(R"({ "extends": "bas.json" })", "g.json:1:14", "did you mean \"base.json\"?");
   expect_error(R"({ "extends": "g.json" })", "g.json:1:14", "");
   write("x.json", R"({ "extends": "y.json" })");
   write("y.json", R"({ "extends": "x.json" })");
   expect_error(R"({ "extends": "x.json" })", "y.json:1:14", "extends itself");
+}
+
+TEST_F(Load, MakesANodeLikeAnother) {
+  write("sum.json", R"({ "inputs": { "a": "Number", "b": "Number" }, "parameters": { "k": { "default": 1 } }, "nodes": {
+    "k": { "type": "toy.constant", "params": { "x": "${k}" } },
+    "s": { "type": "toy.add", "in": { "a": "inputs.a", "b": "inputs.b" } } }, "outputs": { "n": "s", "k": "k" } })");
+  const std::string text = R"({ "parameters": { "two": { "default": 2 } }, "nodes": {
+    "third": { "like": "second", "in": { "b": "second.n" } },
+    "first": { "graph": "sum.json", "in": { "a": "one", "b": "one" }, "params": { "k": "${two}" } },
+    "second": { "like": "first", "in": { "b": "first.n" }, "params": { "k": 3 } },
+    "one": { "type": "toy.constant", "params": { "x": 1 } } }, "outputs": { "n": "third.n", "k1": "first.k", "k3": "third.k" } })";
+  const auto graph = load(text);
+  ASSERT_TRUE(graph) << diagnostics.str();
+  const Json nodes = graph->resolved["nodes"];
+  EXPECT_EQ(nodes["third/s"]["in"], Json::parse(R"({ "a": "one.n", "b": "second/s.sum" })"));
+  EXPECT_EQ(nodes["second/s"]["in"], Json::parse(R"({ "a": "one.n", "b": "first/s.sum" })"));
+  EXPECT_EQ(nodes["first/k"]["params"]["x"], 2);
+  EXPECT_EQ(nodes["third/k"]["params"]["x"], 3);
+
+  const auto set = load(text, {"nodes.third/k.params.x=9", "nodes.first.params.k=5", "nodes.third.in.a=second.n"});
+  ASSERT_TRUE(set) << diagnostics.str();
+  EXPECT_EQ(set->resolved["nodes"]["third/k"]["params"]["x"], 9);
+  EXPECT_EQ(set->resolved["nodes"]["third/s"]["in"]["a"], "second/s.sum");
+  EXPECT_EQ(set->resolved["nodes"]["first/k"]["params"]["x"], 5);
+}
+
+TEST_F(Load, LaysAnotherGraphOverBeforeItCopiesNodes) {
+  write("base.json", R"({ "nodes": { "a": { "type": "toy.constant", "params": { "x": 6 } }, "b": { "like": "a" } },
+    "outputs": { "n": "b" } })");
+  const auto graph = load(R"({ "extends": "base.json", "nodes": { "a": { "params": { "x": 4 } } } })");
+  ASSERT_TRUE(graph) << diagnostics.str();
+  EXPECT_EQ(graph->resolved["nodes"]["b"]["params"]["x"], 4);
+  EXPECT_EQ(graph->nodes.size(), 1u) << "what is only copied is not run";
+  const auto back = load(R"({ "extends": "base.json", "nodes": { "b": { "params": { "x": null } } } })");
+  ASSERT_TRUE(back) << diagnostics.str();
+  EXPECT_EQ(back->resolved["nodes"]["b"]["params"]["x"], 1) << "back to its default";
+}
+
+TEST_F(Load, SaysWhatIsWrongWithALikeness) {
+  expect_error(R"({ "nodes": { "alpha": { "type": "toy.constant" }, "b": { "like": "alhpa" } } })", "g.json:1:66",
+               "node \"b\" is like \"alhpa\", which is no node here (did you mean \"alpha\"?)");
+  expect_error(R"({ "nodes": { "a": { "like": "a" } } })", "g.json:1:29", "node \"a\" is like itself");
+  expect_error(R"({ "nodes": { "a": { "like": "b" }, "b": { "like": "a" } } })", "g.json:1:51", "is like itself");
+  expect_error(R"({ "nodes": { "a": { "like": 3 } } })", "g.json:1:29", "the name of a node");
+  expect_error(R"({ "nodes": { "a": { "type": "toy.constant" }, "b": { "like": "a", "graph": "x.json" } } })",
+               "g.json:1:47", "must have either");
+  expect_error(R"({ "nodes": { "a": { "like": "b" }, "b": { "like": "a" } } })", "--set:1:1",
+               "\"a\" is a node, not a graph", {"nodes.a/c.params.x=1"});
 }
 
 TEST_F(Load, DropsNodesNobodyNeeds) {
