@@ -1,6 +1,8 @@
 #include "nodes/mapping/dpds_decode.h"
 
+#include <limits>
 #include <numbers>
+#include <stdexcept>
 
 #include "nodes/latent/sequences.h"
 #include "nodes/mapping/scaling.h"
@@ -9,6 +11,8 @@
 namespace talkgraph {
 
 namespace {
+
+constexpr double kNone = -std::numeric_limits<double>::infinity();  ///< score of a path whose points have overflowed
 
 /// The likeliest paths to all states of a frame.
 struct Front {
@@ -39,6 +43,7 @@ class ApproximateViterbi {
   void observe(Front& front, const Eigen::RowVectorXd& frame) const {
     const Eigen::VectorXd distances = (front.points.rowwise() - frame).cwiseAbs2() * precision_.transpose();
     front.scores.array() -= 0.5 * (distances.array() + constant_);
+    front.scores = front.scores.array().isFinite().select(front.scores, kNone);
   }
 
  private:
@@ -63,7 +68,10 @@ FrameLabels DecodeDpds::operator()(const Dpds& model, const Track& visual) const
     if (!visual.is_lost(t)) viterbi.observe(front, frames.row(t));
   }
   Eigen::Index last = 0;
-  front.scores.maxCoeff(&last);
+  if (!(front.scores.maxCoeff(&last) > kNone))
+    throw std::runtime_error(
+        "the points of the deterministic process dynamical system grow beyond all bounds before the track ends: train "
+        "it with a `bound` below 1");
   for (const Eigen::Index phone : trace_back(from, last))
     decoded.labels.push_back(model.chain.phones[static_cast<std::size_t>(phone)]);
   return decoded;

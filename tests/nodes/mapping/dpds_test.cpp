@@ -202,6 +202,16 @@ TEST(DpdsDecode, BridgesLostFrames) {
   EXPECT_THROW(DecodeDpds{}(truth(), face), std::runtime_error);
 }
 
+TEST(DpdsDecode, RefusesPathsThatOverflow) {
+  Dpds model = truth();
+  model.prediction.setConstant(3);
+  Track face = sample(truth(), 1, 1000, true, 4).visual[0];
+  EXPECT_THROW(DecodeDpds{}(model, face), std::runtime_error);
+  // A phone that stays where it is has a path; the others do not take it along.
+  model.prediction.row(0).setZero();
+  EXPECT_EQ(DecodeDpds{}(model, face).labels.back(), model.chain.phones[0]);
+}
+
 TEST(DpdsSynthesise, AnUnknownPhoneLeavesTheFaceAsItIs) {
   Track audio = sound(4);
   audio.rate = Rational(30);
