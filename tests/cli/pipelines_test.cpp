@@ -13,6 +13,7 @@
 #include "experiment/meanings.h"
 #include "experiment/series.h"
 #include "graph/differences.h"
+#include "graph/draft.h"
 #include "nodes/all_nodes.h"
 #include "tests/source_folder.h"
 #include "tests/temporary_folder.h"
@@ -48,6 +49,32 @@ TEST(Pipelines, AreSound) {
   for (const auto& file : pipelines()) {
     Diagnostics diagnostics;
     EXPECT_TRUE(load_graph(file, registry, diagnostics)) << diagnostics.str();
+  }
+}
+
+TEST(Pipelines, UseEveryParameterThatTheyHave) {
+  for (const auto& file : pipelines()) {
+    Diagnostics diagnostics;
+    const auto json = detail::parse_file(file, diagnostics);
+    ASSERT_TRUE(json) << diagnostics.str();
+    const std::string text = json->plain().dump();
+    for (const auto& parameter : detail::members_of(*json, "parameters")) {
+      if (parameter.key == "title") continue;  // of a report, which some variants leave out
+      EXPECT_NE(text.find("${" + parameter.key + "}"), std::string::npos) << file << ": " << parameter.key;
+    }
+  }
+}
+
+TEST(Pipelines, SettingsOfStatesReachThemInEveryRoundOfEm) {
+  const Registry registry = all_nodes();
+  Diagnostics diagnostics;
+  const auto graph = load_graph(test::source("/pipelines/fragments/learn-em-contexts.json"), registry, diagnostics,
+                                {{"latent_dimension=7", "max_frames=99"}});
+  ASSERT_TRUE(graph) << diagnostics.str();
+  const Json nodes = graph->resolved.at("nodes");
+  for (const std::string round : {"", "first_", "moved_"}) {
+    EXPECT_EQ(nodes.at(round + "sgpdm").at("params").at("latent_dimension"), 7) << round;
+    EXPECT_EQ(nodes.at(round + "windows").at("params").at("max_frames"), 99) << round;
   }
 }
 
