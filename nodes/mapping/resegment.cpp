@@ -25,8 +25,8 @@ constexpr double impossible = -std::numeric_limits<double>::infinity();
 
 double log_volume(const GaussianProcess& gp) { return gp.scale.array().log().sum(); }
 
-/// max_X ln p(audio, visual, X) of frames in their own units.
-double log_likelihood(const Sgpdm& state, const Eigen::MatrixXd& audio, const std::optional<Eigen::MatrixXd>& visual,
+/// max_X of the objective of synthesis, the visual frames being known too, in their own units.
+double best_objective(const Sgpdm& state, const Eigen::MatrixXd& audio, const std::optional<Eigen::MatrixXd>& visual,
                       int iterations) {
   const Eigen::MatrixXd heard = scaled(state.audio, audio);
   SequenceObjective objective(state, heard, true);
@@ -97,7 +97,7 @@ class BoundarySearch {
     const Eigen::MatrixXd heard = audio_.middleRows(begin, length);
     std::optional<Eigen::MatrixXd> seen;
     if (visual_) seen = visual_->middleRows(begin, length);
-    return log_likelihood(state_for(model_, phone, heard.colwise().mean()), heard, seen, node_.iterations);
+    return best_objective(state_for(model_, phone, heard.colwise().mean()), heard, seen, node_.iterations);
   }
 
   const Resegment& node_;
@@ -148,13 +148,13 @@ Resegment::Out Resegment::operator()(const Ssgpdm& model, const FrameLabels& lab
       label = runs[run].symbol;
     }
   const double n = static_cast<double>(frames);
-  out.scores.values = {{"log_likelihood", search.best() / n}, {"moved", moved / n}};
+  out.scores.values = {{"objective", search.best() / n}, {"moved", moved / n}};
   if (std::isfinite(search.before())) out.scores.values["before"] = search.before() / n;
   return out;
 }
 
 void describe(Description<Resegment>& d) {
-  d.type("mapping.resegment").version(1).stored();
+  d.type("mapping.resegment").version(2).stored();
   d.summary("moves the boundaries of phones to where a switching model of phones finds speech likeliest");
   d.source("Thesis §5.1.3, the E-step of EM");
   d.input("model", "whose states are phones")
@@ -163,7 +163,7 @@ void describe(Description<Resegment>& d) {
       .input("visual", "visual parameters at that rate; without them the sound alone counts");
   d.output("labels", &Resegment::Out::labels, "the same phones in the same order");
   d.output("scores", &Resegment::Out::scores,
-           "log_likelihood a frame, before: that of the labels given if it is finite, moved: the share of frames that "
+           "objective a frame, before: that of the labels given if it is finite, moved: the share of frames that "
            "changed");
   d.param("reach", &Resegment::reach).at_least(0).unit("frames").doc("a boundary moves by no more");
   d.param("iterations", &Resegment::iterations)

@@ -12,8 +12,9 @@ namespace talkgraph {
 /// The E-step of a switching model whose segmentation is not taken as given (docs/method.md §5, thesis §5.1.3): the
 /// phones of an utterance stay in their order, each boundary between two of them moves by at most `reach` frames, to
 /// where
-///   Σ over runs  max_X ln p(Ŷ, Ẑ, X | state of the run's phone)
-/// is greatest, in the features' own units. States are phones (context.windows). The best boundaries are found by
+///   Σ over runs  max_X ln p(Ŷ, Ẑ | X) + w ln p(X)
+/// is greatest, p being the state of the run's phone, in the features' own units, and w the weight that its dynamics have
+/// in synthesis: the objective of sequence optimisation, no likelihood where w is not 1. States are phones (context.windows). The best boundaries are found by
 /// dynamic programming, X by optimisation from the nearest training window. Without `visual`, for speech to be
 /// synthesised, Ẑ is left out. Training on the new labels is the M-step.
 ///
@@ -23,7 +24,7 @@ namespace talkgraph {
 struct Resegment {
   struct Out {
     FrameLabels labels;
-    /// "log_likelihood" a frame; "before", that of the labels given, if it is finite; "moved", the share of frames
+    /// "objective" a frame; "before", that of the labels given, if it is finite; "moved", the share of frames
     /// relabelled.
     Scores scores;
   };

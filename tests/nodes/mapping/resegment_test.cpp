@@ -74,7 +74,7 @@ TEST(Resegment, FindsTheBoundariesThatMoved) {
   for (const std::string given : {"aaaabbbccaaa", "abbbbbccccaa", truth.c_str()}) {
     const auto seen = Resegment{}(model(), labels_of(given), u.audio, &u.visual, context);
     EXPECT_EQ(str(seen.labels), truth) << given;
-    EXPECT_GE(seen.scores.values.at("log_likelihood"), seen.scores.values.at("before"));
+    EXPECT_GE(seen.scores.values.at("objective"), seen.scores.values.at("before"));
     double moved = 0;
     for (std::size_t t = 0; t < truth.size(); ++t) moved += given[t] != truth[t];
     EXPECT_NEAR(seen.scores.values.at("moved"), moved / 12, 1e-12);
@@ -92,7 +92,7 @@ TEST(Resegment, DoesNotSayALikelihoodBeforeThatIsNotFinite) {
   Context context;
   const auto out = Resegment{}(distant, labels_of("aaaabb"), u.audio, &u.visual, context);
   EXPECT_EQ(str(out.labels), "aaabbb");
-  EXPECT_TRUE(std::isfinite(out.scores.values.at("log_likelihood")));
+  EXPECT_TRUE(std::isfinite(out.scores.values.at("objective")));
   EXPECT_FALSE(out.scores.values.contains("before"));
 }
 
@@ -119,12 +119,12 @@ TEST(Resegment, IsTheBestOfAllSegmentations) {
       for (std::size_t b = std::max<std::size_t>(a + 1, 2); b <= 5; ++b) {
         const std::string candidate = std::string(a, 'a') + std::string(b - a, 'b') + std::string(6 - b, 'c');
         const double value = Resegment{.reach = 0}(model(), labels_of(candidate), u.audio, &u.visual, context)
-                                 .scores.values.at("log_likelihood");
+                                 .scores.values.at("objective");
         if (value > best) likeliest = candidate;
         best = std::max(best, value);
       }
     EXPECT_EQ(str(found.labels), likeliest);
-    EXPECT_NEAR(found.scores.values.at("log_likelihood"), best, 1e-9 * std::abs(best));
+    EXPECT_NEAR(found.scores.values.at("objective"), best, 1e-9 * std::abs(best));
   }
 }
 
@@ -139,7 +139,7 @@ TEST(Resegment, LikelihoodsAreInTheFeaturesOwnUnits) {
   Track louder = u.audio;
   louder.values *= 10;
   const auto value = [&](const Ssgpdm& m, const Track& audio) {
-    return Resegment{}(m, u.labels, audio, &u.visual, context).scores.values.at("log_likelihood");
+    return Resegment{}(m, u.labels, audio, &u.visual, context).scores.values.at("objective");
   };
   EXPECT_NEAR(value(model(), u.audio) - value(scaled, louder), 4 * std::log(10), 1e-8);
 }
@@ -172,7 +172,7 @@ TEST(Resegment, AnswersPhonesWithoutAState) {
   const Utterance u = utterance(truth, 94);
   const auto out = Resegment{}(model(), labels_of("aaabbbbqqaaa"), u.audio, nullptr, context);
   EXPECT_EQ(out.labels.labels.size(), 12u);
-  EXPECT_TRUE(std::isfinite(out.scores.values.at("log_likelihood")));
+  EXPECT_TRUE(std::isfinite(out.scores.values.at("objective")));
 }
 
 }  // namespace
