@@ -13,10 +13,10 @@ namespace talkgraph {
 /// phones of an utterance stay in their order, each boundary between two of them moves by at most `reach` frames, to
 /// where
 ///   Σ over runs  max_X ln p(Ŷ, Ẑ | X) + w ln p(X)
-/// is greatest, p being the state of the run's phone, in the features' own units, and w the weight that its dynamics have
-/// in synthesis: the objective of sequence optimisation, no likelihood where w is not 1. States are phones (context.windows). The best boundaries are found by
-/// dynamic programming, X by optimisation from the nearest training window. Without `visual`, for speech to be
-/// synthesised, Ẑ is left out. Training on the new labels is the M-step.
+/// is greatest, p being the state of the run's phone, in the features' own units, and w the weight that its dynamics
+/// have in synthesis: the objective of sequence optimisation, no likelihood where w is not 1. States are phones
+/// (context.windows). The best boundaries are found by dynamic programming, X by optimisation from the nearest training
+/// window. Without `visual`, for speech to be synthesised, Ẑ is left out. Training on the new labels is the M-step.
 ///
 /// Streams that differ by at most 2 frames are used on their common beginning; labels beyond it stay. An utterance with
 /// lost frames keeps its labels. Throws std::runtime_error if streams differ by more, on other dimensions than the
