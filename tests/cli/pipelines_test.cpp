@@ -251,6 +251,7 @@ TEST(Pipelines, OfMouthsHaveTheSettingsOfTheTable) {
   for (const auto& [key, node] : mouths.items()) {
     const std::string name = key.starts_with("said/") ? key.substr(5) : "";
     if (name.find('/') == std::string::npos || name.find("_score/") != std::string::npos) continue;
+    if (name.starts_with("learnt_runs/") || name.starts_with("runs/")) continue;  // faces: switching-grid-s1.json
     EXPECT_EQ(node.at("type"), faces.at("face/" + name).at("type")) << name;
     EXPECT_EQ(node.at("params"), faces.at("face/" + name).at("params")) << name;
     methods.insert(name.substr(0, name.find('/')));
