@@ -118,6 +118,21 @@ TEST(DpdsObjective, OffsetsAreTheLikeliest) {
   EXPECT_FALSE(objective.evaluate(1e200 * a, cost, nullptr));
 }
 
+/// The parts of a model that depend on its scaling, in the frames' own units.
+struct OwnUnits {
+  Eigen::MatrixXd first, offset;
+  Eigen::RowVectorXd noise;
+};
+OwnUnits own_units(const Dpds& model) {
+  const auto scaled_back = [&](const Eigen::MatrixXd& m) -> Eigen::MatrixXd {
+    return m * model.visual.deviation.asDiagonal();
+  };
+  const Eigen::MatrixXd kept = 1 - model.prediction.array();
+  return {scaled_back(model.first).rowwise() + model.visual.mean,
+          scaled_back(model.offset) + kept * model.visual.mean.asDiagonal(),
+          model.noise.cwiseProduct(model.visual.deviation.cwiseAbs2())};
+}
+
 TEST(Dpds, RecoversTheModelItsDataWereDrawnFrom) {
   Context context;
   for (const double bound : {0.0, 0.98}) {
@@ -127,6 +142,11 @@ TEST(Dpds, RecoversTheModelItsDataWereDrawnFrom) {
     const Dpds model = train(corpus.visual, corpus.labels, context);
     EXPECT_EQ(model.chain.phones, truth().chain.phones);
     EXPECT_LT((model.prediction - truth().prediction).cwiseAbs().maxCoeff(), 0.05);
+    const OwnUnits found_parts = own_units(model), true_parts = own_units(truth());
+    EXPECT_LT((found_parts.noise.array() / true_parts.noise.array() - 1).abs().maxCoeff(), 0.1);
+    EXPECT_LT((found_parts.first - true_parts.first).topRows(2).cwiseAbs().maxCoeff(), 0.15) << "c begins nothing";
+    EXPECT_LT((found_parts.offset - true_parts.offset).cwiseAbs().maxCoeff(), 0.15);
+    EXPECT_NEAR(model.chain.start[0], 0.5, 0.15);
     EXPECT_LT((model.chain.transitions - truth().chain.transitions).cwiseAbs().maxCoeff(), 0.05);
     EXPECT_LT(testing::largest_fall(model.trace), 1e-12);
     EXPECT_GT(model.trace.size(), 3U);
