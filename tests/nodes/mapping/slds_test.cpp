@@ -110,6 +110,62 @@ TrainSlds node(bool sound) {
   return train;
 }
 
+/// Mean and covariances at some lags of the frames of a phone that lasts, scaled as the truth's are: what all systems
+/// have in common that say the same of what is observed.
+struct Moments {
+  Eigen::VectorXd mean, noise;  ///< noise: variances of observation
+  std::vector<Eigen::MatrixXd> lagged;
+};
+Moments moments(const Slds& model, const std::string& phone, bool sound) {
+  const auto joined = [&](const Eigen::RowVectorXd& audio, const Eigen::RowVectorXd& visual) {
+    Eigen::VectorXd all(visual.size() + (sound ? audio.size() : 0));
+    all << (sound ? audio : Eigen::RowVectorXd()).transpose(), visual.transpose();
+    return all;
+  };
+  const Slds like = truth();
+  const Eigen::VectorXd deviations = joined(model.audio.deviation, model.visual.deviation),
+                        units = joined(like.audio.deviation, like.visual.deviation).cwiseInverse(),
+                        ratio = deviations.cwiseProduct(units);
+  const Lds& m = model.phones.at(phone);
+  Eigen::MatrixXd spread = m.first_covariance;
+  for (int i = 0; i < 500; ++i) spread = m.prediction * spread * m.prediction.transpose() + m.prediction_noise;
+  const Eigen::VectorXd at = (Eigen::MatrixXd::Identity(2, 2) - m.prediction).inverse() * m.offset;
+  const Eigen::VectorXd shift = joined(model.audio.mean, model.visual.mean) - joined(like.audio.mean, like.visual.mean);
+  Moments all{ratio.cwiseProduct(m.mean.transpose() + m.observation * at) + shift.cwiseProduct(units),
+              m.observation_noise.diagonal().cwiseProduct(ratio.cwiseAbs2()),
+              {}};
+  for (int lag = 0; lag < 4; ++lag) {
+    Eigen::MatrixXd covariance = m.observation * spread * m.observation.transpose();
+    if (lag == 0) covariance += m.observation_noise;
+    all.lagged.emplace_back(ratio.asDiagonal() * covariance * ratio.asDiagonal());
+    spread = m.prediction * spread;
+  }
+  return all;
+}
+
+TEST(Slds, RecoversTheModelItsDataWereDrawnFrom) {
+  Context context;
+  const Corpus corpus = sample(truth(), 100, 60, 1);
+  for (const bool sound : {false, true}) {
+    TrainSlds train = node(sound);
+    train.iterations = 300;
+    train.tolerance = 1e-7;
+    const Slds model = train(corpus.audio, corpus.visual, corpus.labels, context);
+    for (const std::string phone : {"a", "b"}) {
+      const Moments found = moments(model, phone, sound),
+                    right = moments(sound ? truth() : of_face(truth()), phone, sound);
+      EXPECT_LT((found.mean - right.mean).cwiseAbs().maxCoeff(), 0.1);
+      EXPECT_LT((found.noise - right.noise).cwiseAbs().maxCoeff(), 0.02) << "of 0.1";
+      for (std::size_t lag = 0; lag < 4; ++lag)
+        EXPECT_LT((found.lagged[lag] - right.lagged[lag]).cwiseAbs().maxCoeff(),
+                  0.1 * right.lagged[lag].cwiseAbs().maxCoeff())
+            << "lag " << lag;
+    }
+    EXPECT_NEAR(model.chain.start[0], 0.7, 0.1);
+    EXPECT_LT((model.chain.transitions - truth().chain.transitions).cwiseAbs().maxCoeff(), 0.03);
+  }
+}
+
 TEST(Slds, PredictsNearlyAsWellAsTheModelItsDataWereDrawnFrom) {
   Context context;
   const Corpus corpus = sample(truth(), 20, 60, 1), unseen = sample(truth(), 20, 60, 1'000'000);
