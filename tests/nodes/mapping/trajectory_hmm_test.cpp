@@ -176,6 +176,33 @@ TEST(TrajectoryHmm, RecoversTheFacesOfTheStatesThatTheDataWereDrawnFrom) {
     }
 }
 
+TEST(TrajectoryHmm, RecoversTheVariancesThatTheDataWereDrawnWith) {
+  TrajectoryHmm best = truth();
+  for (Eigen::Index row = 1; row < best.face.variances.rows(); row += 2) best.face.variances.row(row) *= 4;
+  best.face.variances.middleCols(seen, seen) *= 0.5;
+  const TrajectoryHmm model = trained(drawn_from(best, 120, 1), 200);
+  const auto variances = [](const TiedGaussians& tied, const Scaling& scaling, std::size_t row) {
+    const Eigen::RowVectorXd squares = scaling.deviation.array().square();
+    return Eigen::RowVectorXd(tied.variances.row(static_cast<Eigen::Index>(row)).cwiseProduct(squares.replicate(1, 3)));
+  };
+  Eigen::MatrixXd ratios(6, 3 * seen);
+  Eigen::Index row = 0;
+  for (const PhoneContext& context : {PhoneContext{"s", "aa", "b"}, {"aa", "b", "s"}, {"aa", "b", "aa"}})
+    for (std::size_t state = 0; state < 2; ++state) {
+      const auto of = [&](const TiedGaussians& tied) { return rows_of(tied, context, 2)[state]; };
+      EXPECT_TRUE(variances(model.sound, model.audio, of(model.sound)).head(heard).isApproxToConstant(0.2, 0.25));
+      ratios.row(row++) = variances(model.face, model.visual, of(model.face))
+                              .cwiseQuotient(variances(best.face, best.visual, of(best.face)));
+    }
+  // A trajectory tells those of one dimension up to a factor, and least of curvatures, which weigh least in it.
+  for (Eigen::Index d = 0; d < seen; ++d) {
+    const Eigen::ArrayXXd logs = ratios(Eigen::all, Eigen::seqN(d, 3, seen)).array().log();
+    const double factor = logs.leftCols(2).mean();
+    EXPECT_LT((logs.leftCols(2) - factor).abs().maxCoeff(), std::log(1.4)) << ratios;
+    EXPECT_LT((logs.col(2) - factor).abs().maxCoeff(), std::log(2)) << ratios;
+  }
+}
+
 TEST(TrajectoryHmm, SameBitsEachTime) {
   const Corpus corpus = drawn_from(truth(), 4, 3);
   const TrajectoryHmm a = trained(corpus, 10), b = trained(corpus, 10);
