@@ -18,14 +18,14 @@ using Symbols = std::vector<std::int64_t>;
 /// The memories worth keeping and the automaton of them.
 class Learner {
  public:
-  Learner(const PrefixTree& tree, std::size_t symbols, double prune, double keep)
-      : tree_(tree), symbols_(symbols), total_(static_cast<double>(tree[0].count)), prune_(prune), keep_(keep) {}
+  Learner(const PrefixTree& tree, const std::vector<std::string>& alphabet, double prune, double keep)
+      : tree_(tree), alphabet_(alphabet), total_(static_cast<double>(tree[0].count)), prune_(prune), keep_(keep) {}
 
   std::vector<Vlmm::State> states(int order) {
     state_.assign(tree_.nodes().size(), -1);
     state_[0] = 0;
     for (int node = 1; node < static_cast<int>(tree_.nodes().size()); ++node)
-      if (tree_[node].length <= order && survives(node) && gain(node) >= keep_)
+      if (tree_[node].length <= order && survives(node) && !is_pause(node) && gain(node) >= keep_)
         for (int n = node; n > 0; n = tree_[n].suffix) state_[static_cast<std::size_t>(n)] = 0;
     return connected(sorted_memories());
   }
@@ -33,6 +33,7 @@ class Learner {
  private:
   double share(int node) const { return count(node) / total_; }
   bool survives(int node) const { return share(node) > prune_; }
+  bool is_pause(int node) const { return is_end_pause(alphabet_[static_cast<std::size_t>(tree_[node].symbol)]); }
 
   template <class Visit>
   void each_branch(int node, Visit visit) const {
@@ -76,7 +77,7 @@ class Learner {
       state_[static_cast<std::size_t>(nodes[i])] = static_cast<std::int64_t>(i);
     std::vector<Vlmm::State> states;
     for (const int node : nodes) {
-      Vlmm::State state{tree_.string(node), std::vector<double>(symbols_), Symbols(symbols_, -1), end(node)};
+      Vlmm::State state{tree_.string(node), std::vector<double>(alphabet_.size()), Symbols(alphabet_.size(), -1), end(node)};
       const double all = followed(node);
       each_branch(node, [&](int c) {
         int longest = c;
@@ -91,7 +92,7 @@ class Learner {
   }
 
   const PrefixTree& tree_;
-  std::size_t symbols_;
+  const std::vector<std::string>& alphabet_;
   double total_, prune_, keep_;
   std::vector<std::int64_t> state_;  // of each node of the tree, -1 if its string is no memory
 };
@@ -157,7 +158,7 @@ Vlmm ContextTrain::operator()(const Collected<FrameLabels>& labels) const {
   v.alphabet = streams.alphabet;
   PrefixTree tree(order + 1);
   for (const auto& stream : streams.symbols) tree.add(stream);
-  v.states = Learner(tree, v.alphabet.size(), prune, keep).states(order);
+  v.states = Learner(tree, v.alphabet, prune, keep).states(order);
   for (const auto& stream : streams.units) {
     AutomatonReader reader(v);
     for (const auto& unit : stream) v.occupancy[reader.read(unit.symbol).label] += unit.length;
@@ -176,7 +177,7 @@ Vlmm ContextTrain::operator()(const Collected<FrameLabels>& labels) const {
 }
 
 void describe(Description<ContextTrain>& d) {
-  d.type("context.train").version(2).stored();
+  d.type("context.train").version(3).stored();
   d.summary("learns phonetic contexts: a variable length Markov model of phones");
   d.source("Thesis §5.2.1, Algorithm 3");
   d.input("labels", "phones at the video rate").output("vlmm", "the contexts");

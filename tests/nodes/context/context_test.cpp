@@ -88,6 +88,11 @@ TEST(Contexts, PausesAtTheEndsHaveStatesOfTheirOwn) {
   ADD_FAILURE() << "no state for trailing pauses";
 }
 
+TEST(ContextTrain, KeepsNoPauseOfTheEndsAsAMemory) {
+  const ContextTrain all{.order = 1, .prune = 0, .keep = 0, .min_windows = 1};
+  EXPECT_EQ(memories(all({{"x", with_pauses(3, "ab", 2)}})), (std::set<std::string>{"", "a", "b"}));
+}
+
 TEST(ContextWindows, LeaveOutLostFrames) {
   const Collected<FrameLabels> labels = {{"x", stream("abab")}};
   const Vlmm v = ContextTrain{.order = 1, .prune = 0, .keep = 0.01, .min_windows = 1}(labels);
