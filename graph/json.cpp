@@ -65,7 +65,7 @@ constexpr std::size_t deepest = 200;
 class Builder final : public nlohmann::json_sax<Json> {
  public:
   Builder(std::shared_ptr<const SourceText> source, Diagnostics& diagnostics)
-      : source_(source), places_(source), diagnostics_(diagnostics) {}
+      : source_(source), places_(std::move(source)), diagnostics_(diagnostics) {}
 
   LocatedJson root;
 
@@ -253,8 +253,9 @@ std::string_view LocatedJson::kind_name() const {
 }
 
 std::optional<LocatedJson> parse_json(std::shared_ptr<const SourceText> source, Diagnostics& diagnostics) {
-  Builder builder(source, diagnostics);
-  if (!Json::sax_parse(source->text, &builder)) return {};
+  const std::string& text = source->text;
+  Builder builder(std::move(source), diagnostics);  // which keeps the text
+  if (!Json::sax_parse(text, &builder)) return {};
   return std::move(builder.root);
 }
 
