@@ -150,7 +150,7 @@ Hmm EntropicHmm::fit(const Sequences& data, Random& random, Context& context) co
                                              context, objective, [&] { maximise(model, data, given, floors, *this); });
     model.trace.insert(model.trace.end(), trace.begin(), trace.end());
     left -= static_cast<int>(trace.size()) - 1;
-    const Hmm settled = model;
+    Hmm settled = model;
     if (left == 0 || prior == 0 || !trim_transitions(model, given, prior)) return model;
     if (objective() < settled.trace.back()) return settled;
   }
