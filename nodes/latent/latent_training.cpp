@@ -152,7 +152,7 @@ SgpdmProblem problem_of(const LatentTraining& options, const std::vector<Trainin
 }  // namespace
 
 Eigen::RowVectorXd output_scale(const Eigen::RowVectorXd& deviation, OutputScaling scaling) {
-  const Eigen::RowVectorXd ones = Eigen::RowVectorXd::Ones(deviation.size());
+  Eigen::RowVectorXd ones = Eigen::RowVectorXd::Ones(deviation.size());
   if (scaling == OutputScaling::none || (deviation.array() == 0).all()) return ones;
   if (scaling == OutputScaling::per_dimension) return (deviation.array() > 0).select(deviation, ones);
   return deviation.stableNorm() / std::sqrt(static_cast<double>(deviation.size())) * ones;

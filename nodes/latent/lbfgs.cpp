@@ -61,7 +61,7 @@ class Run {
   }
 
   /// Infinite where the cost cannot be evaluated, on which the line search steps back.
-  double evaluate(Eigen::VectorXd at, Eigen::Map<Eigen::VectorXd> gradient) {
+  double evaluate(const Eigen::VectorXd& at, Eigen::Map<Eigen::VectorXd> gradient) {
     try {
       ++s_.report.evaluations;
       double cost = 0;
