@@ -260,7 +260,8 @@ class Reader {
     if (scale == "log" && (has_step || from <= 0 || to <= 0))
       return wrong("a range on a log scale needs a \"count\" and limits above 0");
     if (has_step) {
-      if (!(step > 0) || to < from) return wrong("\"to\" must not be below \"from\"");
+      if (!(step > 0)) return {};  // said already
+      if (to < from) return wrong("\"to\" must not be below \"from\"");
       const double steps = std::floor((to - from) / step * (1 + 1e-12) + 1e-9);
       if (steps >= most_trials) return wrong(fmt::format("more than {} values", most_trials));
       count = static_cast<int>(steps) + 1;
@@ -394,6 +395,10 @@ std::optional<Experiment> load_experiment(const std::filesystem::path& file, Dia
   const auto json = detail::parse_file(file, diagnostics);
   if (!json) return {};
   Experiment experiment = Reader(diagnostics).read(*json);
+  std::erase_if(experiment.set, [&](const Change& fixed) {  // what varies was never in all runs
+    return std::ranges::any_of(experiment.varied,
+                               [&](const auto& v) { return is_within(whole_path(fixed.path), v.first); });
+  });
   experiment.name = file.stem().string();
   if (!diagnostics.ok()) return {};
   return experiment;

@@ -194,15 +194,17 @@ std::string score_table(const Experiment& experiment, const OutputEstimates& est
                     lines);
 }
 
-/// "By acc ours is ahead of all others (p below 0.05) but theirs, 0.01 behind; it wins 12 recordings."
+/// "By acc ours is ahead of all others (p below 0.05) but theirs, 0.01 behind; it wins 12 recordings." Or "By acc ours
+/// is the best, but significantly (p below 0.05) ahead of none; ..."
 std::string verdict_text(const Verdict& verdict) {
   const auto bold = [](const std::string& row) { return "<b>" + escape_markup(row) + "</b>"; };
   std::vector<std::string> close;
   for (const auto& other : verdict.close)
     close.push_back(fmt::format("{}, {:.2g} behind", bold(other.row), other.behind));
-  std::string text =
-      fmt::format("By {} {} is ahead of all others (p below 0.05)", escape_markup(verdict.score), bold(verdict.best));
-  if (!close.empty()) text += fmt::format(" but {}", fmt::join(close, "; "));
+  std::string text = fmt::format("By {} {} is ", escape_markup(verdict.score), bold(verdict.best));
+  text += verdict.beaten > 0 ? "ahead of all others (p below 0.05)"
+                             : "the best, but significantly (p below 0.05) ahead of none";
+  if (verdict.beaten > 0 && !close.empty()) text += fmt::format(" but {}", fmt::join(close, "; "));
   if (!std::isnan(verdict.won)) text += fmt::format("; it wins {:g} recordings", verdict.won);
   return text + ".";
 }

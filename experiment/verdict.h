@@ -17,11 +17,12 @@ struct Verdict {
   std::string score;         ///< "acc"
   std::string best;          ///< the row whose mean is best
   double won = NAN;          ///< recordings in which no other row is better; NaN where that is not known
-  std::vector<Close> close;  ///< rows that it is not significantly ahead of, p at least 0.05 or not tested
+  std::size_t beaten = 0;    ///< rows that it is significantly ahead of, p below 0.05
+  std::vector<Close> close;  ///< the others
 };
 
 /// Verdicts of one output, whose measures "x behind" and "x won" are those of statistics.methods (`best`); none where
-/// it has no such measures. In the order of settings, then of scores.
+/// it has no such measures, or no test, as means over repeats have none. In the order of settings, then of scores.
 std::vector<Verdict> verdicts(const std::vector<const Estimate*>& estimates);
 
 }  // namespace talkgraph

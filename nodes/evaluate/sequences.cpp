@@ -20,7 +20,8 @@ Table SequenceTable::operator()(const Collected<Scores>& all) const {
 void describe(Description<SequenceTable>& d) {
   d.type("evaluate.sequences").summary("the scores of each sequence as a table").source("Thesis §6.2");
   d.input("scores", "of each sequence").output("table", "one row a sequence");
-  d.param("scores", &SequenceTable::scores).doc("which, in the order of the columns");
+  d.param("scores", &SequenceTable::scores)
+      .doc("which, in the order of the columns; one that no sequence has is an empty column");
   d.param("title", &SequenceTable::title).doc("heading of the table");
 }
 

@@ -31,7 +31,8 @@ void describe(Description<Summary>& d) {
   d.type("evaluate.summary").summary("mean and standard deviation of scores over sequences").source("Thesis §6.2");
   d.input("scores", "of each sequence")
       .output("table", "one row; of each score x: x, x std; sequences: how many there are");
-  d.param("scores", &Summary::scores).doc("which, in the order of the columns");
+  d.param("scores", &Summary::scores)
+      .doc("which, in the order of the columns; one that no sequence has is an empty column");
 }
 
 }  // namespace talkgraph

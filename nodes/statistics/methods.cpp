@@ -161,12 +161,28 @@ SequenceScores best_scores(const std::vector<SequenceScores>& scores, const std:
   return best;
 }
 
-/// The mean of each method, turned so that the larger is better; -∞ of those that are not ranked.
+/// The scores of sequences that all ranked methods have: those that are tested and have any.
+std::vector<SequenceScores> shared_scores(const std::vector<SequenceScores>& scores, const std::vector<bool>& tested) {
+  std::map<std::string, std::size_t> methods;  // that have a sequence
+  std::size_t ranked = 0;
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    if (tested[i] && !scores[i].empty()) {
+      ++ranked;
+      for (const auto& [sequence, value] : scores[i]) ++methods[sequence];
+    }
+  std::vector<SequenceScores> shared(scores.size());
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    for (const auto& entry : scores[i])
+      if (tested[i] && methods[entry.first] == ranked) shared[i].insert(entry);
+  return shared;
+}
+
+/// The mean of each method over what all have, turned so that the larger is better; -∞ of those that are not ranked.
 std::vector<double> ranked_means(const std::vector<SequenceScores>& scores, const std::vector<bool>& tested,
                                  double sign) {
   std::vector<double> means;
-  for (std::size_t i = 0; i < scores.size(); ++i)
-    means.push_back(tested[i] && !scores[i].empty() ? sign * mean_of(values_of(scores[i])) : -INFINITY);
+  for (const auto& shared : shared_scores(scores, tested))
+    means.push_back(shared.empty() ? -INFINITY : sign * mean_of(values_of(shared)));
   return means;
 }
 
@@ -216,16 +232,16 @@ Table by_sequence(const Comparison& c) {
 std::vector<std::vector<double>> standings(const Comparison& c, const Ranking& ranking) {
   const auto& [by_method, differences, p, effects] = c.scores.at(ranking.score);
   std::vector<std::vector<double>> cells(by_method.size(), {NAN, NAN, 0});
+  const auto shared = shared_scores(by_method, c.tested);
   const auto means = ranked_means(by_method, c.tested, ranking.sign);
   const auto best = static_cast<std::size_t>(std::max_element(means.begin(), means.end()) - means.begin());
-  if (best < means.size() && means[best] > -INFINITY) cells[best][0] = 0;
-  for (std::size_t k = 0; k < c.pairs.size(); ++k) {
-    const auto [i, j] = c.pairs[k];
-    if (i != best && j != best) continue;
-    auto& other = cells[i == best ? j : i];
-    other[0] = (i == best) == (ranking.sign > 0) ? differences[k] : 0 - differences[k];  // never -0
-    other[1] = p[k];
-  }
+  for (std::size_t i = 0; i < by_method.size(); ++i)
+    if (means[i] > -INFINITY)
+      cells[i][0] = mean_of(ranking.sign > 0 ? paired_differences(shared[best], shared[i])
+                                             : paired_differences(shared[i], shared[best]));
+  for (std::size_t k = 0; k < c.pairs.size(); ++k)
+    if (const auto [i, j] = c.pairs[k]; means[best] > -INFINITY && (i == best || j == best))
+      cells[i == best ? j : i][1] = p[k];
   const auto bests = best_scores(by_method, c.tested, ranking.sign);
   for (std::size_t i = 0; i < by_method.size(); ++i)
     for (const auto& [sequence, value] : by_method[i]) cells[i][2] += same_score(value, value_or_nan(bests, sequence));
@@ -255,7 +271,7 @@ CompareMethods::Out CompareMethods::operator()(const Collected<Table>& sequences
 
 void describe(Description<CompareMethods>& d) {
   d.type("statistics.methods")
-      .version(3)
+      .version(4)
       .summary("one table of all methods: means, spread, confidence intervals, significance");
   d.source("Student 1908; Efron 1979; Wilcoxon 1945; Holm 1979; Benjamini & Hochberg 1995");
   d.input("sequences", "an object of named tables of evaluate.sequences, one a method");
@@ -267,7 +283,8 @@ void describe(Description<CompareMethods>& d) {
   d.output(
       "best", &CompareMethods::Out::best,
       "a row a method, from the best by the first score to rank by; of each such score x: x behind, x behind p, x won; "
-      "x behind: how far the mean is behind the best method's; x won: sequences in which no other method is better");
+      "x behind: how far the mean is behind the best method's, over the sequences that all have; x won: sequences in "
+      "which no other method is better");
   d.param("scores", &CompareMethods::scores).doc("which, in the order of the columns; empty: all");
   d.param("against", &CompareMethods::against)
       .doc("method that each other is tested against by Wilcoxon's signed-rank test over sequences; empty: none");

@@ -41,13 +41,12 @@ struct CompareMethods {
     Table pairs;
     /// A row a sequence that any method has. Of each ranked score x:
     ///   x           the best of all methods, those of `aside` left out
-    ///   x: METHOD   of each method, from the best mean to the worst, then of those of `aside`; NaN if it has none
-    ///   there
+    ///   x: METHOD   of each method, from the best mean to the worst (as in `best`), then of those of `aside`; NaN if it
+    ///               has none there
     Table sequences;
     /// A row a method, those of `aside` left out, the best by the first ranked score first. Of each ranked score, the
-    /// best method being that of the best mean:
-    ///   x behind    mean difference to the best method over the sequences that have both, above 0 if this one is
-    ///               worse; 0 of the best one
+    /// best method being that of the best mean over the sequences that all these methods have:
+    ///   x behind    mean difference to the best method over those sequences; 0 of the best one, NaN if there are none
     ///   x behind p  as in `pairs`, corrected over all of them, for the same scores chose the best; NaN of the best one
     ///   x won       sequences in which no other method is better
     Table best;

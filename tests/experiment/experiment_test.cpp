@@ -250,6 +250,13 @@ TEST_F(ExperimentFile, WhatIsSetInAllRunsReplacesWhatTheFileSets) {
   EXPECT_EQ(score({R"(nodes.score.params={"noise": "${noise}"})"})["offset"], 0);
 }
 
+TEST_F(ExperimentFile, WhatVariesIsNotTakenForSet) {
+  const auto e = sound(R"("set": { "scale": 12, "parameters.noise.default": 1, "seed": 5 },
+                          "vary": { "parameters.scale.default": [1, 2] }, "seeds": [1, 2])");
+  ASSERT_EQ(e.set.size(), 1u) << "which the page says of all runs";
+  EXPECT_EQ(e.set[0].path, "parameters.noise.default");
+}
+
 TEST_F(ExperimentFile, WhatVariesIsNotSetInAllRuns) {
   const auto complaint_of = [&](const std::string& members, const std::string& set) {
     Experiment e = sound(members);

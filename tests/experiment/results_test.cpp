@@ -159,9 +159,16 @@ TEST(Results, SayWhoIsBest) {
                                {"best", "", "a < b", "acc won", 3},
                                {"best", "", "c", "acc behind", 0.125},
                                {"best", "", "c", "acc behind p", 0.0625}});
-  EXPECT_THAT(html_results(two_settings(), {}, {best, {}, {}, {}}, ""),
-              HasSubstr("<li>filters: 20. By acc <b>a &lt; b</b> is ahead of all others (p below 0.05) but <b>c</b>, "
-                        "0.12 behind; it wins 3 recordings.</li>"));
+  EXPECT_THAT(
+      html_results(two_settings(), {}, {best, {}, {}, {}}, ""),
+      HasSubstr("<li>filters: 20. By acc <b>a &lt; b</b> is the best, but significantly (p below 0.05) ahead of "
+                "none; it wins 3 recordings.</li>"));
+  auto more = best;
+  const auto of_d = result_of({{"best", "", "d", "acc behind", 0.5}, {"best", "", "d", "acc behind p", 0.01}});
+  more.observations.insert(more.observations.end(), of_d.observations.begin(), of_d.observations.end());
+  EXPECT_THAT(html_results(two_settings(), {}, {more, {}, {}, {}}, ""),
+              HasSubstr("<b>a &lt; b</b> is ahead of all others (p below 0.05) but <b>c</b>, 0.12 behind; it wins 3 "
+                        "recordings.</li>"));
 }
 
 TEST(Results, SayWhomMethodsAreTestedAgainst) {

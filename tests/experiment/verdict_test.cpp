@@ -34,6 +34,7 @@ TEST(Verdicts, NameTheBestAndWhoIsNotSignificantlyBehind) {
   EXPECT_EQ(all[0].score, "acc");
   EXPECT_EQ(all[0].best, "ours");
   EXPECT_EQ(all[0].won, 7);
+  EXPECT_EQ(all[0].beaten, 1u);
   EXPECT_THAT(all[0].close, ElementsAre(FieldsAre("near", 0.1), FieldsAre("untested", 0.2), FieldsAre("theirs", 0.3)));
 }
 
@@ -62,6 +63,8 @@ TEST(Verdicts, TiesAreNotWon) {
 TEST(Verdicts, AreNotGivenWhereNoneIsBest) {
   EXPECT_THAT(verdicts_of({of(0, "a", "acc", 0.5)}), IsEmpty());
   EXPECT_THAT(verdicts_of({of(0, "a", "acc behind", 0.1, 0.01)}), IsEmpty()) << "as means over repeats have it";
+  EXPECT_THAT(verdicts_of({of(0, "a", "acc behind", 0)}), IsEmpty()) << "there is no other";
+  EXPECT_THAT(verdicts_of({of(0, "a", "acc behind", 0), of(0, "b", "acc behind", 0.4)}), IsEmpty()) << "no test";
   EXPECT_THAT(verdicts_of({}), IsEmpty());
 }
 

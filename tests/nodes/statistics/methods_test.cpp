@@ -119,6 +119,23 @@ TEST(CompareMethods, RanksMethodsOfDifferentSequences) {
   EXPECT_EQ(cell(out.best, "ridge", "acc won"), 1);
 }
 
+TEST(CompareMethods, RanksBySequencesThatAllHave) {
+  const Table easy = scores({0.8});
+  const auto out =
+      compare({.larger_better = {"acc"}}, {{"easy", easy}, {"all", scores({0.9, 0.2})}, {"none", scores({})}});
+  EXPECT_EQ(out.best.rows, (std::vector<std::string>{"all", "easy", "none"}));
+  EXPECT_EQ(cell(out.best, "all", "acc behind"), 0);
+  EXPECT_NEAR(cell(out.best, "easy", "acc behind"), 0.1, 1e-12);
+  EXPECT_TRUE(std::isnan(cell(out.best, "none", "acc behind")));
+  EXPECT_EQ(out.sequences.columns, (std::vector<std::string>{"acc", "acc: all", "acc: easy", "acc: none"}));
+
+  Table other = easy;
+  other.rows = {"z"};
+  const auto apart = compare({.larger_better = {"acc"}}, {{"easy", easy}, {"other", other}});
+  EXPECT_TRUE(std::isnan(cell(apart.best, "easy", "acc behind"))) << "nothing is shared";
+  EXPECT_TRUE(std::isnan(cell(apart.best, "other", "acc behind")));
+}
+
 TEST(CompareMethods, RanksOneMethodAndOneSequence) {
   const auto alone = compare({.larger_better = {"acc"}}, {{"ridge", kMethods[2]}});
   EXPECT_EQ(alone.best.rows, (std::vector<std::string>{"ridge"}));
