@@ -78,6 +78,11 @@ class Reader {
     FilePath file;
     detail::read_parameter(json, file, {}, "section: \"experiments\"", diagnostics_);
     if (file.path.empty()) return {};
+    if (!std::filesystem::is_regular_file(file.path) || is_series(file.path)) {
+      const char* wrong = is_series(file.path) ? "is a series, which cannot be part of one" : "is no file";
+      diagnostics_.error(json.place, fmt::format("series: {} {}", file.path, wrong));
+      return {};
+    }
     auto experiment = load_experiment(file.path, diagnostics_);
     if (!experiment) return {};
     if (!names_.insert(experiment->name).second) {

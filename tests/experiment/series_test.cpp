@@ -9,6 +9,7 @@
 namespace talkgraph {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -123,7 +124,10 @@ TEST_F(SeriesTest, MistakesAreLocated) {
   EXPECT_THAT(complaint(""), HasSubstr("at least one section"));
   EXPECT_THAT(complaint(R"({ "titel": "x" })"), HasSubstr("did you mean \"title\""));
   EXPECT_THAT(complaint(R"({ "experiments": "one.json" })"), HasSubstr("a list of files"));
-  EXPECT_THAT(complaint(R"({ "experiments": ["none.json"] })"), HasSubstr("none.json: cannot be read"));
+  EXPECT_THAT(complaint(R"({ "experiments": ["none.json"] })"),
+              AllOf(HasSubstr("story.json:1:"), HasSubstr("none.json is no file")));
+  EXPECT_THAT(complaint(R"({ "experiments": ["story.json"] })"),
+              HasSubstr("story.json is a series, which cannot be part"));
   EXPECT_THAT(complaint(R"({ "experiments": ["one.json", "one.json"] })"), HasSubstr("two experiments are called"));
   EXPECT_THAT(complaint(R"({ "table": { "columns": ["a", "b"], "rows": { "x": ["1"] } } })"),
               HasSubstr("row \"x\" has 1 cells in 2 columns"));
