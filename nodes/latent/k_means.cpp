@@ -20,6 +20,7 @@ Eigen::Index draw(const Eigen::VectorXd& weights, Random& random) {
 }
 
 Eigen::MatrixXd start(const Eigen::MatrixXd& rows, Eigen::Index clusters, Random& random) {
+  clusters = std::min(clusters, rows.rows());
   Eigen::MatrixXd centres(clusters, rows.cols());
   Eigen::VectorXd nearest = Eigen::VectorXd::Ones(rows.rows());
   for (Eigen::Index k = 0; k < clusters; ++k) {

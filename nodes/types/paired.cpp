@@ -23,19 +23,24 @@ Eigen::Index common_frames(const std::string& utterance, Eigen::Index a, const c
 
 JoinedStreams side_by_side(const Collected<Track>& audio, const Collected<Track>& visual) {
   JoinedStreams both;
+  Eigen::Index visual_dims = 0;
   for (std::size_t i = 0; i < audio.size(); ++i) {
     const std::string& key = audio.key(i);
     const Track* seen = visual.find(key);
     if (!seen) continue;
     const Eigen::Index frames = common_frames(key, audio[i].frames(), "audio frames", seen->frames(), "visual frames");
-    const Eigen::Index dims = audio[i].dimension();
-    if (both.tracks.empty()) both.audio = dims;
-    if (dims != both.audio)
-      throw std::runtime_error(fmt::format(
-          "{}: {} audio dimensions, those before it {}: train all on the same features", key, dims, both.audio));
+    const Eigen::Index dims = audio[i].dimension(), shown = seen->dimension();
+    if (both.tracks.empty()) both.audio = dims, visual_dims = shown;
+    const auto check = [&](const char* kind, Eigen::Index here, Eigen::Index before) {
+      if (here != before)
+        throw std::runtime_error(fmt::format("{}: {} {} dimensions, those before it {}: train all on the same features",
+                                             key, here, kind, before));
+    };
+    check("audio", dims, both.audio);
+    check("visual", shown, visual_dims);
     Track t = beginning(*seen, frames);
     t.names.clear();
-    t.values.resize(frames, dims + seen->dimension());
+    t.values.resize(frames, dims + shown);
     t.values << audio[i].values.topRows(frames), seen->values.topRows(frames);
     both.tracks.add(key, std::move(t));
   }

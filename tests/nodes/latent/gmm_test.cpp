@@ -119,6 +119,12 @@ TEST(Gmm, AnswersDegenerateData) {
   }
 }
 
+TEST(Gmm, HasNoMoreComponentsThanFrames) {
+  Random random(1);
+  Context context;
+  EXPECT_EQ(TrainGmm{.components = 2'000'000'000}.fit(gaussian(5, 2, 1), random, context).mixture.components(), 5);
+}
+
 TEST(Gmm, AStarvedComponentStays) {
   GaussianMixture mixture = three_components();
   const Eigen::MatrixXd frames = gaussian(20, 2, 1);
