@@ -141,7 +141,7 @@ Pcca fit_pcca(const Eigen::MatrixXd& y, const Eigen::MatrixXd& z, Eigen::Index d
 
 Ppca TrainPpca::operator()(const Collected<Track>& tracks, Context& context) const {
   const Sequences data = measured_runs(tracks);
-  const Ppca model = fit_ppca(data.frames, latent_dimension);
+  Ppca model = fit_ppca(data.frames, latent_dimension);
   const double log_likelihood = model.log_likelihood(data.frames).sum();
   if (!std::isfinite(log_likelihood))
     throw std::runtime_error(

@@ -15,7 +15,7 @@ SequenceObjective::SequenceObjective(const Sgpdm& model, const Eigen::MatrixXd& 
 void SequenceObjective::see(Eigen::MatrixXd visual) { seen_ = std::move(visual); }
 
 void SequenceObjective::follow(Eigen::RowVectorXd visual, double weight) {
-  before_ = visual;
+  before_ = std::move(visual);
   follow_weight_ = weight;
 }
 

@@ -70,7 +70,7 @@ Eigen::MatrixXd shared_start(LatentStart start, const Eigen::MatrixXd& y, const 
 /// Beyond those, principal components of what they leave of the larger stream.
 Eigen::MatrixXd start_values(LatentStart start, const Eigen::MatrixXd& y, const Eigen::MatrixXd& z, Eigen::Index d) {
   const Eigen::Index shared = std::min({d, y.cols(), z.cols()});
-  const Eigen::MatrixXd x = shared_start(start, y, z, shared);
+  Eigen::MatrixXd x = shared_start(start, y, z, shared);
   if (shared == d) return x;
   const Eigen::MatrixXd& larger = y.cols() > z.cols() ? y : z;
   const Eigen::MatrixXd left = larger - x * x.completeOrthogonalDecomposition().solve(larger);
