@@ -14,8 +14,8 @@ SequenceObjective::SequenceObjective(const Sgpdm& model, const Eigen::MatrixXd& 
 
 void SequenceObjective::see(Eigen::MatrixXd visual) { seen_ = std::move(visual); }
 
-void SequenceObjective::follow(Eigen::RowVectorXd visual, double weight) {
-  before_ = std::move(visual);
+void SequenceObjective::follow(const Eigen::RowVectorXd& visual, double weight) {
+  before_ = visual;
   follow_weight_ = weight;
 }
 

@@ -22,7 +22,7 @@ class SequenceObjective : public Objective {
   void see(Eigen::MatrixXd visual);
   /// Adds weight · ln p(visual | first point) under the visual process, which
   /// draws the first frame towards that of the segment before; `visual` is 1 × D_Z, scaled.
-  void follow(Eigen::RowVectorXd visual, double weight);
+  void follow(const Eigen::RowVectorXd& visual, double weight);
 
   Eigen::Index size() const override { return audio_.rows() * model_.latents.cols(); }
   bool evaluate(const Eigen::VectorXd& parameters, double& cost, Eigen::VectorXd* gradient) override;
