@@ -395,10 +395,6 @@ std::optional<Experiment> load_experiment(const std::filesystem::path& file, Dia
   const auto json = detail::parse_file(file, diagnostics);
   if (!json) return {};
   Experiment experiment = Reader(diagnostics).read(*json);
-  std::erase_if(experiment.set, [&](const Change& fixed) {  // what varies was never in all runs
-    return std::ranges::any_of(experiment.varied,
-                               [&](const auto& v) { return is_within(whole_path(fixed.path), v.first); });
-  });
   experiment.name = file.stem().string();
   if (!diagnostics.ok()) return {};
   return experiment;
@@ -415,6 +411,12 @@ void set_in_all_runs(Experiment& experiment, const std::vector<std::string>& set
     std::erase_if(experiment.set, [&](const Change& fixed) { return is_within(whole_path(fixed.path), path); });
     experiment.set.push_back(*std::move(change));
   }
+}
+
+bool varies(const Experiment& experiment, const Change& set) {
+  return std::ranges::any_of(experiment.varied, [&](const auto& varied) {
+    return is_within(whole_path(set.path), varied.first) || is_within(varied.first, whole_path(set.path));
+  });
 }
 
 std::optional<Graph> load_trial(const Experiment& experiment, const Trial& trial, const Registry& registry,

@@ -49,6 +49,9 @@ std::optional<Experiment> load_experiment(const std::filesystem::path& file, Dia
 /// factor's place, where the runs' own changes would replace what one sets.
 void set_in_all_runs(Experiment& experiment, const std::vector<std::string>& sets, Diagnostics& diagnostics);
 
+/// Whether something that the file sets in all runs is varied, whole or in part, in some.
+bool varies(const Experiment& experiment, const Change& set);
+
 /// Reads and checks the graph of a trial.
 std::optional<Graph> load_trial(const Experiment& experiment, const Trial& trial, const Registry& registry,
                                 Diagnostics& diagnostics);

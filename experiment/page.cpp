@@ -357,12 +357,13 @@ std::string trial_table(const Experiment& experiment, const std::vector<Graph>& 
                                         {"run", "status", "seconds", "calls", "found", "differs in"}, lines);
 }
 
-/// What is set in all runs: a line, folded where it is a long one.
+/// What is set in all runs, and is not varied in some: a line, folded where it is a long one.
 std::string settings(const Experiment& experiment) {
   constexpr std::size_t in_sight = 6;
   std::vector<std::string> all;
-  for (const auto& [path, value] : experiment.set)
-    all.push_back(fmt::format("<code>{}</code>", escape_markup(path + "=" + text_of(value.plain()))));
+  for (const auto& set : experiment.set)
+    if (!varies(experiment, set))
+      all.push_back(fmt::format("<code>{}</code>", escape_markup(set.path + "=" + text_of(set.value.plain()))));
   if (all.empty()) return "";
   std::string line = fmt::format("<p>In all runs {}.</p>\n", fmt::join(all, ", "));
   if (all.size() <= in_sight) return line;

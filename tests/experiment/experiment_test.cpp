@@ -250,11 +250,22 @@ TEST_F(ExperimentFile, WhatIsSetInAllRunsReplacesWhatTheFileSets) {
   EXPECT_EQ(score({R"(nodes.score.params={"noise": "${noise}"})"})["offset"], 0);
 }
 
-TEST_F(ExperimentFile, WhatVariesIsNotTakenForSet) {
-  const auto e = sound(R"("set": { "scale": 12, "parameters.noise.default": 1, "seed": 5 },
-                          "vary": { "parameters.scale.default": [1, 2] }, "seeds": [1, 2])");
-  ASSERT_EQ(e.set.size(), 1u) << "which the page says of all runs";
-  EXPECT_EQ(e.set[0].path, "parameters.noise.default");
+TEST_F(ExperimentFile, WhatIsSetHoldsWhereALevelDoesNotVaryIt) {
+  const auto e =
+      sound(R"("set": { "scale": 12, "nodes.score.params": { "scale": "${scale}" }, "parameters.noise.default": 1,
+                                   "seed": 5 },
+                          "vary": { "k": { "levels": { "as set": {}, "other": { "parameters.scale.default": 2,
+                                                                                "nodes.score.params.offset": 3 } } } },
+                          "seeds": [1, 2])");
+  Diagnostics diagnostics;
+  const auto graphs = load_trials(e, test::scored_registry(), diagnostics);
+  ASSERT_TRUE(graphs) << diagnostics.str();
+  EXPECT_EQ(graphs->at(0).resolved["nodes"]["score"]["params"]["scale"], 12);
+  EXPECT_EQ(graphs->at(2).resolved["nodes"]["score"]["params"]["scale"], 2);
+  std::vector<std::string> in_all;
+  for (const auto& set : e.set)
+    if (!varies(e, set)) in_all.push_back(set.path);
+  EXPECT_THAT(in_all, ElementsAre("parameters.noise.default"));
 }
 
 TEST_F(ExperimentFile, WhatVariesIsNotSetInAllRuns) {
