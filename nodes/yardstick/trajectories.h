@@ -17,7 +17,7 @@ void describe(Description<TrajectoriesTrain>& d);
 
 /// For every segment the mean trajectory of its state, stretched to the segment's length; of a state that training had
 /// none of, that of the longest suffix of its label, else the state with most frames that ends in the same phone, else
-/// the training mean. Throws std::runtime_error if segments leave gaps or overlap.
+/// the mean of all windows' frames. Throws std::runtime_error if segments leave gaps or overlap.
 struct TrajectoriesPredict {
   Track operator()(const TrajectoriesModel& model, const SegmentTrack& segments) const;
 };

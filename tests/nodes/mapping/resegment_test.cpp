@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "nodes/context/train.h"
 #include "nodes/context/windows.h"
+#include "nodes/latent/predictive.h"
 #include "nodes/latent/sgpdm.h"
 #include "nodes/mapping/ssgpdm.h"
+#include "nodes/mapping/start_values.h"
 #include "tests/nodes/latent/gaussian.h"
 
 namespace talkgraph {
@@ -128,20 +132,42 @@ TEST(Resegment, IsTheBestOfAllSegmentations) {
   }
 }
 
-TEST(Resegment, LikelihoodsAreInTheFeaturesOwnUnits) {
+TEST(Resegment, ObjectivesAreInTheFeaturesOwnUnits) {
   Context context;
   const Utterance u = utterance(truth, 97);
-  Ssgpdm scaled = model();
-  for (auto& [label, state] : scaled.states) {
-    state.audio.mean *= 10;
-    state.audio.scale *= 10;
-  }
-  Track louder = u.audio;
-  louder.values *= 10;
-  const auto value = [&](const Ssgpdm& m, const Track& audio) {
-    return Resegment{}(m, u.labels, audio, &u.visual, context).scores.values.at("objective");
+  const auto value = [&](const Ssgpdm& m, const Track& audio, const Track& visual) {
+    return Resegment{}(m, u.labels, audio, &visual, context).scores.values.at("objective");
   };
-  EXPECT_NEAR(value(model(), u.audio) - value(scaled, louder), 4 * std::log(10), 1e-8);
+  const double plain = value(model(), u.audio, u.visual);
+  Ssgpdm louder = model(), larger = model();
+  for (auto& [label, state] : louder.states) state.audio.mean *= 10, state.audio.scale *= 10;
+  for (auto& [label, state] : larger.states) state.visual.mean *= 10, state.visual.scale *= 10;
+  Track audio = u.audio, visual = u.visual;
+  audio.values *= 10;
+  visual.values *= 10;
+  EXPECT_NEAR(plain - value(louder, audio, u.visual), 4 * std::log(10), 1e-8);
+  EXPECT_NEAR(plain - value(larger, u.audio, visual), 3 * std::log(10), 1e-8);
+}
+
+// Of one run, at the latent points that the search starts from.
+TEST(Resegment, ObjectiveIsWhatSynthesisMaximises) {
+  Context context;
+  const Utterance u = utterance("aaaa", 12);
+  const Sgpdm& state = model().states.at("a");
+  const Eigen::MatrixXd heard = scaled(state.audio, u.audio.values), x = nearest_window(state, heard);
+  Predictive predictive;
+  const auto density = [&](const GaussianProcess& gp, const Eigen::MatrixXd& at, const Eigen::MatrixXd& of) {
+    predictive.compute(gp, at);
+    return predictive.log_density(scaled(gp, of)) - static_cast<double>(of.rows()) * gp.scale.array().log().sum();
+  };
+  const auto d = static_cast<double>(x.cols());
+  const double first = -0.5 * (d * std::log(2 * std::numbers::pi * state.first_variance) +
+                               x.row(0).squaredNorm() / state.first_variance);
+  const double dynamics = first + density(*state.dynamics, x.topRows(3), x.bottomRows(3));
+  const double sum = density(state.audio, x, u.audio.values) + density(state.visual, x, u.visual.values) +
+                     state.dynamics_bias * dynamics;
+  const auto found = Resegment{.reach = 0, .iterations = 0}(model(), u.labels, u.audio, &u.visual, context);
+  EXPECT_NEAR(found.scores.values.at("objective"), sum / 4, 1e-8);
 }
 
 TEST(Resegment, KeepsLabelsOfLostFramesAndOfNone) {
