@@ -100,8 +100,6 @@ std::vector<std::string> state_labels(const Vlmm& vlmm) {
   return labels;
 }
 
-std::string last_phone(const std::string& label) { return label.substr(label.rfind('-') + 1); }
-
 std::int64_t phone_count(const std::string& label) { return 1 + std::count(label.begin(), label.end(), '-'); }
 
 }  // namespace talkgraph

@@ -55,8 +55,6 @@ std::string state_label(const Vlmm& vlmm, const std::string& context, std::int64
 /// The labels that have a state of their own.
 std::vector<std::string> state_labels(const Vlmm& vlmm);
 
-/// The phone that a label ends in.
-std::string last_phone(const std::string& label);
 /// How many phones a label has.
 std::int64_t phone_count(const std::string& label);
 

@@ -5,16 +5,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "nodes/types/vlmm.h"
+
 namespace talkgraph {
-
-namespace {
-
-std::string last_phone(const std::string& label) {
-  const auto dash = label.rfind('-');
-  return dash == std::string::npos ? label : label.substr(dash + 1);
-}
-
-}  // namespace
 
 Ssgpdm AssembleSsgpdm::operator()(const Collected<Sgpdm>& states) const {
   if (states.empty()) throw std::runtime_error("no trained states: the training set made no windows");
@@ -34,14 +27,7 @@ Ssgpdm AssembleSsgpdm::operator()(const Collected<Sgpdm>& states) const {
 }
 
 const Sgpdm& state_for(const Ssgpdm& model, const std::string& label, const Eigen::RowVectorXd& audio_mean) {
-  for (std::string suffix = label;;) {
-    if (const auto found = model.states.find(suffix); found != model.states.end()) return found->second;
-    const auto dash = suffix.find('-');
-    if (dash == std::string::npos) break;
-    suffix.erase(0, dash + 1);
-  }
-  if (const auto found = model.ending.find(last_phone(label)); found != model.ending.end())
-    return model.states.at(found->second);
+  if (const Sgpdm* state = speaker_for(label, model.states, model.ending)) return *state;
   const Sgpdm* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [name, state] : model.states) {

@@ -23,6 +23,8 @@ std::string join_phones(const std::vector<std::string>& phones, std::size_t from
   return label;
 }
 
+std::string last_phone(const std::string& label) { return label.substr(label.rfind('-') + 1); }
+
 std::int64_t frames_read(const Vlmm& v, std::size_t state) {
   const auto& s = v.states[state];
   const std::string memory = s.memory.empty() ? "" : memory_label(v, s.memory) + "-";

@@ -50,5 +50,22 @@ std::string memory_label(const Vlmm& v, const std::vector<std::int64_t>& memory)
 std::vector<std::string> label_phones(const std::string& label);
 /// The inverse, of phones[from] to phones[to - 1].
 std::string join_phones(const std::vector<std::string>& phones, std::size_t from, std::size_t to);
+/// The phone that a label ends in.
+std::string last_phone(const std::string& label);
+
+/// What speaks for a label, met in training or not: what its longest suffix has that has any, itself included; else
+/// what the label has that `ending` names for its last phone; else none.
+template <class Value>
+const Value* speaker_for(const std::string& label, const std::map<std::string, Value>& values,
+                         const std::map<std::string, std::string>& ending) {
+  for (std::size_t from = 0;;) {
+    if (const auto found = values.find(label.substr(from)); found != values.end()) return &found->second;
+    const auto dash = label.find('-', from);
+    if (dash == std::string::npos) break;
+    from = dash + 1;
+  }
+  const auto found = ending.find(last_phone(label));
+  return found == ending.end() ? nullptr : &values.at(found->second);
+}
 
 }  // namespace talkgraph

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "nodes/types/vlmm.h"
+
 namespace talkgraph {
 
 namespace {
@@ -22,20 +24,6 @@ Eigen::MatrixXd stretched(const Eigen::MatrixXd& rows, Eigen::Index length) {
     out.row(t) = (1 - share) * rows.row(before) + share * rows.row(after);
   }
   return out;
-}
-
-std::string last_phone(const std::string& label) { return label.substr(label.rfind('-') + 1); }
-
-const Eigen::MatrixXd* trajectory_for(const TrajectoriesModel& model, const std::string& label) {
-  for (std::size_t from = 0;;) {
-    if (const auto found = model.trajectories.find(label.substr(from)); found != model.trajectories.end())
-      return &found->second;
-    const auto dash = label.find('-', from);
-    if (dash == std::string::npos) break;
-    from = dash + 1;
-  }
-  const auto found = model.ending.find(last_phone(label));
-  return found == model.ending.end() ? nullptr : &model.trajectories.at(found->second);
 }
 
 }  // namespace
@@ -84,7 +72,7 @@ Track TrajectoriesPredict::operator()(const TrajectoriesModel& model, const Segm
     if (s.start != at || s.length < 1 || s.start + s.length > segments.frames)
       throw std::runtime_error(
           fmt::format("segment \"{}\" at frame {} does not follow frame {}", s.label, s.start, at));
-    const Eigen::MatrixXd* trajectory = trajectory_for(model, s.label);
+    const Eigen::MatrixXd* trajectory = speaker_for(s.label, model.trajectories, model.ending);
     out.values.middleRows(s.start, s.length) =
         trajectory ? stretched(*trajectory, s.length) : Eigen::MatrixXd(model.mean.replicate(s.length, 1));
     at += s.length;
