@@ -97,7 +97,7 @@ std::vector<double> triangle_of(const Eigen::MatrixXd& root) {
 }
 
 Eigen::MatrixXd from_triangle(const std::vector<double>& rows) {
-  const auto k = static_cast<Eigen::Index>((std::sqrt(8.0 * static_cast<double>(rows.size()) + 1) - 1) / 2 + 0.5);
+  const auto k = std::lround((std::sqrt(8.0 * static_cast<double>(rows.size()) + 1) - 1) / 2);
   if (k * (k + 1) / 2 != static_cast<Eigen::Index>(rows.size()))
     throw std::runtime_error("a stored triangle has " + std::to_string(rows.size()) + " entries; train the model anew");
   Eigen::MatrixXd root = Eigen::MatrixXd::Zero(k, k);
@@ -136,7 +136,10 @@ void fields(Archive& ar, ProcessOfModel& p) {
   std::optional<Eigen::MatrixXd> own;
   if (!ar.loading() && !exact) own = basis;
   ar("basis", own);
-  if (ar.loading()) basis = own ? std::move(*own) : p.inputs;
+  if (ar.loading() && own)
+    basis = *std::move(own);
+  else if (ar.loading())
+    basis = p.inputs;
   prediction_fields(ar, p.process);
 }
 

@@ -14,8 +14,8 @@ std::atomic<long> allocations = 0;
 }
 
 // What Eigen calls, by the linker's --wrap, and what everything else does.
-extern "C" void* __real_malloc(std::size_t size);
-extern "C" void* __wrap_malloc(std::size_t size) {
+extern "C" void* __real_malloc(std::size_t size);   // NOLINT(bugprone-reserved-identifier)
+extern "C" void* __wrap_malloc(std::size_t size) {  // NOLINT(bugprone-reserved-identifier)
   ++allocations;
   return __real_malloc(size);
 }
@@ -23,6 +23,8 @@ void* operator new(std::size_t size) {
   if (void* memory = malloc(size)) return memory;
   throw std::bad_alloc();
 }
+// GCC 12 takes the two for strangers where it inlines only one of them.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 void operator delete(void* memory) noexcept { free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { free(memory); }
 

@@ -1,5 +1,6 @@
 #include "nodes/latent/coupled_hmm.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -72,7 +72,7 @@ Enumerated enumerate(const Hmm& model, const Eigen::MatrixXd& frames) {
   Enumerated e;
   e.states.setZero(length, states);
   e.steps.setZero(states, states);
-  const auto paths = static_cast<Eigen::Index>(std::pow(states, length) + 0.5);
+  const auto paths = std::lround(std::pow(states, length));
   for (Eigen::Index number = 0; number < paths; ++number) {
     std::vector<Eigen::Index> path;
     for (Eigen::Index t = 0, rest = number; t < length; ++t, rest /= states) path.push_back(rest % states);
@@ -120,7 +120,7 @@ TEST(Hmm, RecoversTheModelItsDataWereDrawnFrom) {
   train.covariance = CovarianceKind::full;
   const Hmm found = train.fit(data, random, context);
   double reached = 0;
-  for (int s = 0; s < 60; ++s)
+  for (Eigen::Index s = 0; s < 60; ++s)
     reached +=
         forward_backward(chain_of(model), log_densities(model, data.frames.middleRows(200 * s, 200))).log_likelihood;
   EXPECT_GT(found.trace.back(), reached);
