@@ -30,7 +30,8 @@ inline constexpr EnumNames<SymbolKind, 2> enum_names<SymbolKind>{
 /// pruning what was seen twice or less costs a third of it.
 ///
 /// Pauses at the ends of a stream (phones.mark_pauses) are labels of their own,
-/// no part of a memory.
+/// no part of a memory. Each counts as one symbol of those that follow no memory,
+/// which perplexity and samples leave out.
 ///
 /// Trainable are the longest suffix with at least `min_windows` windows of each
 /// label met in training; a phone with fewer is spoken for by the commonest of its viseme if that has as many. Throws

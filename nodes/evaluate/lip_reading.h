@@ -8,8 +8,8 @@
 
 namespace talkgraph {
 
-/// The units that are read in a track, one a frame: the likeliest path through the reader's network, every unit that is
-/// entered weighing e^insertion. Lost frames count as not observed. Throws std::runtime_error if the track has another
+/// The units that are read in a track, one a frame: the likeliest path through the reader's network, every unit after
+/// the first weighing e^insertion. Lost frames count as not observed. Throws std::runtime_error if the track has another
 /// dimension than the reader, or values that are not finite.
 std::vector<std::string> read_lips(const LipReader& reader, const Track& track, double insertion);
 

@@ -226,7 +226,7 @@ TEST_P(Optimisers, ReachTheClosedFormOfPpca) {
   const Eigen::Index n = 12, dims = 30, d = 2;
   const Eigen::MatrixXd y = 1.5 * gaussian(n, d, 1) * gaussian(d, dims, 2) + 0.4 * gaussian(n, dims, 3);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(y * y.transpose() / static_cast<double>(dims));
-  const Eigen::VectorXd values = eigen.eigenvalues();
+  const Eigen::VectorXd& values = eigen.eigenvalues();
   const double noise = values.head(n - d).mean();
   const double optimum = -0.5 * static_cast<double>(dims) *
                          (static_cast<double>(n) * (std::log(2 * std::numbers::pi) + 1) +

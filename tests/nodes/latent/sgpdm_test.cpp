@@ -627,7 +627,7 @@ TEST(SequenceObjective, IsTheConditionalOfTheJointDensity) {
     const StateData data = wavy(4, 5);
     Sgpdm model = train(data, context);
     Eigen::MatrixXd heard(20, 8);
-    for (int w = 0; w < 4; ++w) heard.middleRows(5 * w, 5) = data.audio[static_cast<std::size_t>(w)];
+    for (Eigen::Index w = 0; w < 4; ++w) heard.middleRows(5 * w, 5) = data.audio[static_cast<std::size_t>(w)];
     const Eigen::MatrixXd x = model.latents.middleRows(5, 4) + 0.1 * gaussian(4, 3, 1),
                           audio = model.audio_frames.middleRows(5, 4) + 0.1 * gaussian(4, 8, 2);
     const auto point_densities = [](const GaussianProcess& gp, const Eigen::MatrixXd& inputs,
@@ -644,7 +644,7 @@ TEST(SequenceObjective, IsTheConditionalOfTheJointDensity) {
       return sum;
     };
     Eigen::MatrixXd in(16, 3), out(16, 3);
-    for (int w = 0; w < 4; ++w) {
+    for (Eigen::Index w = 0; w < 4; ++w) {
       in.middleRows(4 * w, 4) = model.latents.middleRows(5 * w, 4);
       out.middleRows(4 * w, 4) = model.latents.middleRows(5 * w + 1, 4);
     }
