@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "nodes/latent/em.h"
@@ -84,7 +85,7 @@ struct WhitenedFrames {
 struct FilterStep {
   Root predicted;              ///< of the covariance given the frames before
   Eigen::MatrixXd root;        ///< its lower triangle L; of an observed frame
-  Root inner;                  ///< of I + Lᵀ BᵀΓ⁻¹B L; of an observed frame
+  std::optional<Root> inner;   ///< of I + Lᵀ BᵀΓ⁻¹B L; of an observed frame
   Eigen::MatrixXd covariance;  ///< given this frame too
 };
 
@@ -103,7 +104,7 @@ FilterStep filter_step(const Whitened& white, const Eigen::MatrixXd* before, boo
   Eigen::MatrixXd inner = step.root.transpose() * white.precision * step.root;
   inner.diagonal().array() += 1;
   step.inner = root_of(inner, "an observed state");
-  const Eigen::MatrixXd half = step.inner.matrixL().solve(step.root.transpose());
+  const Eigen::MatrixXd half = step.inner->matrixL().solve(step.root.transpose());
   step.covariance = half.transpose() * half;
   return step;
 }
@@ -129,11 +130,11 @@ Eigen::VectorXd predicted_mean(const Lds& model, const Eigen::VectorXd& before) 
 /// Moves the mean of a predicted state to that given its frame, in units of the noise; log-likelihood of the frame.
 double observe(const Whitened& white, const FilterStep& step, const Eigen::VectorXd& frame, Eigen::VectorXd& mean) {
   Eigen::VectorXd error = frame - white.observation * mean;
-  const Eigen::VectorXd correction = step.inner.solve(step.root.transpose() * (white.observation.transpose() * error));
+  const Eigen::VectorXd correction = step.inner->solve(step.root.transpose() * (white.observation.transpose() * error));
   mean += step.root * correction;
   error -= white.observation * (step.root * correction);
   const double constant = static_cast<double>(frame.size()) * std::log(2 * std::numbers::pi);
-  return -0.5 * (white.log_determinant + constant + 2 * step.inner.matrixLLT().diagonal().array().log().sum() +
+  return -0.5 * (white.log_determinant + constant + 2 * step.inner->matrixLLT().diagonal().array().log().sum() +
                  error.squaredNorm() + correction.squaredNorm());
 }
 

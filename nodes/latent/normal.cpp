@@ -26,6 +26,7 @@ Eigen::VectorXd log_density(const Eigen::VectorXd& distances, double log_determi
 }  // namespace
 
 Eigen::VectorXd log_normal(const Eigen::LLT<Eigen::MatrixXd>& covariance, const Eigen::MatrixXd& columns) {
+  if (columns.cols() == 0) return Eigen::VectorXd(0);
   const double log_determinant = 2 * covariance.matrixLLT().diagonal().array().log().sum();
   const Eigen::MatrixXd white = covariance.matrixL().solve(columns);
   return log_density(white.colwise().squaredNorm().transpose(), log_determinant, columns.rows());

@@ -1,6 +1,7 @@
 #include "nodes/types/pile.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 namespace talkgraph {
@@ -97,7 +98,8 @@ void Pile::matrix(std::string_view name, Eigen::MatrixXd& value) {
   one(m.sizes, rows);
   one(m.sizes, columns);
   if (loading_) {
-    if (rows < 0 || columns < 0) throw std::runtime_error("a stored matrix has a negative size; make it anew");
+    if (rows < 0 || columns < 0 || (columns > 0 && rows > std::numeric_limits<std::int64_t>::max() / columns))
+      throw std::runtime_error("a stored matrix has a size that none can have; make it anew");
     value = Eigen::Map<const RowMajor>(take(m.numbers, static_cast<std::size_t>(rows * columns)), rows, columns);
   } else {
     const RowMajor flat = value;
