@@ -77,7 +77,8 @@ class Learner {
       state_[static_cast<std::size_t>(nodes[i])] = static_cast<std::int64_t>(i);
     std::vector<Vlmm::State> states;
     for (const int node : nodes) {
-      Vlmm::State state{tree_.string(node), std::vector<double>(alphabet_.size()), Symbols(alphabet_.size(), -1), end(node)};
+      Vlmm::State state{tree_.string(node), std::vector<double>(alphabet_.size()), Symbols(alphabet_.size(), -1),
+                        end(node)};
       const double all = followed(node);
       each_branch(node, [&](int c) {
         int longest = c;

@@ -9,8 +9,8 @@
 namespace talkgraph {
 
 /// The units that are read in a track, one a frame: the likeliest path through the reader's network, every unit after
-/// the first weighing e^insertion. Lost frames count as not observed. Throws std::runtime_error if the track has another
-/// dimension than the reader, or values that are not finite.
+/// the first weighing e^insertion. Lost frames count as not observed. Throws std::runtime_error if the track has
+/// another dimension than the reader, or values that are not finite.
 std::vector<std::string> read_lips(const LipReader& reader, const Track& track, double insertion);
 
 /// What of the speech can be read off a face that may be synthetic: the units read, one a run, against those that were

@@ -11,8 +11,7 @@ namespace talkgraph {
 /// Compares methods by their scores of each sequence. Tests are Wilcoxon's signed-rank test, sequence by sequence
 /// (signed_rank.h), over the sequences that have both scores; NaN where none has. Throws std::runtime_error if the
 /// tables' columns differ, a sequence is there twice, a score is infinite or unknown, a method named here is not there,
-/// or methods
-/// are ranked by a score twice.
+/// or methods are ranked by a score twice.
 struct CompareMethods {
   std::vector<std::string> scores = {};  ///< columns, in their order; empty: all
   std::string against = {};
@@ -41,8 +40,8 @@ struct CompareMethods {
     Table pairs;
     /// A row a sequence that any method has. Of each ranked score x:
     ///   x           the best of all methods, those of `aside` left out
-    ///   x: METHOD   of each method, from the best mean to the worst (as in `best`), then of those of `aside`; NaN if it
-    ///               has none there
+    ///   x: METHOD   of each method, from the best mean to the worst as in `best`, then of those of `aside`; NaN where it
+    ///               has none
     Table sequences;
     /// A row a method, those of `aside` left out, the best by the first ranked score first. Of each ranked score, the
     /// best method being that of the best mean over the sequences that all these methods have:
