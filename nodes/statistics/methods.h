@@ -40,8 +40,8 @@ struct CompareMethods {
     Table pairs;
     /// A row a sequence that any method has. Of each ranked score x:
     ///   x           the best of all methods, those of `aside` left out
-    ///   x: METHOD   of each method, from the best mean to the worst as in `best`, then of those of `aside`; NaN where it
-    ///               has none
+    ///   x: METHOD   of each method, from the best mean to the worst as in `best`, then of those of `aside`; NaN if
+    ///               it has none
     Table sequences;
     /// A row a method, those of `aside` left out, the best by the first ranked score first. Of each ranked score, the
     /// best method being that of the best mean over the sequences that all these methods have:
