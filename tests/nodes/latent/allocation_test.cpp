@@ -23,6 +23,7 @@ void* operator new(std::size_t size) {
   if (void* memory = malloc(size)) return memory;
   throw std::bad_alloc();
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return malloc(size); }
 // GCC 12 takes the two for strangers where it inlines only one of them.
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 void operator delete(void* memory) noexcept { free(memory); }
