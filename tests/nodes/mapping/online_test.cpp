@@ -32,7 +32,7 @@ Speech speech(std::uint64_t seed, int frames = 60) {
     if (t >= 5 && random.uniform() < 0.4) phone = random.below(8) == 0 ? "sil" : std::string(1, "abc"[random.below(3)]);
     if (t > frames - 8) phone = "sil";
     s.labels.labels.push_back(phone);
-    const auto place = static_cast<std::uint64_t>(phone[0]);
+    const auto place = static_cast<unsigned char>(phone[0]);
     s.audio.values.row(t) += gaussian(1, 4, place);
     s.visual.values.row(t) += gaussian(1, 3, place + 500);
   }

@@ -30,7 +30,7 @@ Utterance utterance(const std::string& letters, std::uint64_t seed) {
   for (Eigen::Index t = 0; t < frames; ++t) {
     const char c = letters[static_cast<std::size_t>(t)];
     u.labels.labels.emplace_back(1, c);
-    const auto place = static_cast<std::uint64_t>(c);
+    const auto place = static_cast<unsigned char>(c);
     u.audio.values.row(t) += 3 * gaussian(1, 4, place);
     u.visual.values.row(t) += 3 * gaussian(1, 3, place + 500);
   }

@@ -38,7 +38,7 @@ StateData half(const std::string& label, double centre, int windows, int length)
     Eigen::VectorXd angle(length);
     const double from = centre + 0.8 * random.normal();
     for (int t = 0; t < length; ++t) angle[t] = from + 0.25 * t;
-    const auto seed = static_cast<std::uint64_t>(100 + w);
+    const auto seed = 100 + static_cast<std::uint64_t>(w);
     data.audio.push_back(curve(angle, 8, 1) + 0.05 * gaussian(length, 8, seed));
     data.visual.push_back(curve(angle, 6, 2) + 0.05 * gaussian(length, 6, seed + 500));
   }
