@@ -27,7 +27,7 @@ Ssgpdm AssembleSsgpdm::operator()(const Collected<Sgpdm>& states) const {
 }
 
 const Sgpdm& state_for(const Ssgpdm& model, const std::string& label, const Eigen::RowVectorXd& audio_mean) {
-  if (const Sgpdm* state = speaker_for(label, model.states, model.ending)) return *state;
+  if (const Sgpdm* state = value_for_label(label, model.states, model.ending)) return *state;
   const Sgpdm* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [name, state] : model.states) {

@@ -56,8 +56,8 @@ std::string last_phone(const std::string& label);
 /// What speaks for a label, met in training or not: what its longest suffix has that has any, itself included; else
 /// what the label has that `ending` names for its last phone; else none.
 template <class Value>
-const Value* speaker_for(const std::string& label, const std::map<std::string, Value>& values,
-                         const std::map<std::string, std::string>& ending) {
+const Value* value_for_label(const std::string& label, const std::map<std::string, Value>& values,
+                             const std::map<std::string, std::string>& ending) {
   for (std::size_t from = 0;;) {
     if (const auto found = values.find(label.substr(from)); found != values.end()) return &found->second;
     const auto dash = label.find('-', from);

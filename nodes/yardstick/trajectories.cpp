@@ -72,7 +72,7 @@ Track TrajectoriesPredict::operator()(const TrajectoriesModel& model, const Segm
     if (s.start != at || s.length < 1 || s.start + s.length > segments.frames)
       throw std::runtime_error(
           fmt::format("segment \"{}\" at frame {} does not follow frame {}", s.label, s.start, at));
-    const Eigen::MatrixXd* trajectory = speaker_for(s.label, model.trajectories, model.ending);
+    const Eigen::MatrixXd* trajectory = value_for_label(s.label, model.trajectories, model.ending);
     out.values.middleRows(s.start, s.length) =
         trajectory ? stretched(*trajectory, s.length) : Eigen::MatrixXd(model.mean.replicate(s.length, 1));
     at += s.length;
